@@ -1,0 +1,29 @@
+# How everything is compiled. Targets of this project link sightline_options privately.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+# Asserts stay in the sanitized builds; Release (-DNDEBUG) drops them.
+
+find_program(SIGHTLINE_CCACHE ccache)
+if(SIGHTLINE_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${SIGHTLINE_CCACHE}")
+endif()
+
+add_library(sightline_options INTERFACE)
+target_compile_options(sightline_options INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Werror
+  # The same bytes everywhere: no fused multiply-add unless it is written.
+  -ffp-contract=off)
+if(SIGHTLINE_SANITIZE)
+  target_compile_options(sightline_options INTERFACE
+    -fsanitize=${SIGHTLINE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(sightline_options INTERFACE -fsanitize=${SIGHTLINE_SANITIZE})
+  target_compile_definitions(sightline_options INTERFACE SIGHTLINE_SANITIZED=1)
+endif()
+if(SIGHTLINE_SCALAR)
+  target_compile_definitions(sightline_options INTERFACE HWY_COMPILE_ONLY_SCALAR=1)
+endif()

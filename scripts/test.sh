@@ -1,0 +1,115 @@
+#!/bin/bash
+# The one test command: installs what is missing, builds, and runs every test.
+#
+#   scripts/test.sh [--full]
+#
+# release     all tests, the installed library's consumers, and the same bytes from a scalar build
+# asan-ubsan  all tests once more under the address and undefined-behaviour sanitizers
+# fuzz        each libFuzzer target for a short while, from the seeds in fuzz/corpus
+# With --full also the heavy cases (SIGHTLINE_FULL=1), the thread sanitizer and longer fuzzing.
+#
+# The last line counts what ran: "N passed, N failed", also left in build/test-summary.txt.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+fuzz_seconds=20
+full=no
+case ${1:-} in
+    '') ;;
+    --full)
+        full=yes
+        fuzz_seconds=600
+        export SIGHTLINE_FULL=1
+        ;;
+    *)
+        echo "usage: scripts/test.sh [--full]" >&2
+        exit 2
+        ;;
+esac
+
+passed=0
+failed=0
+logs=build/test-logs
+rm -f build/test-summary.txt
+mkdir -p "$logs"
+
+# step TEXT LOG COMMAND...: runs a command quietly; its log is shown when it fails.
+step() {
+    local text=$1 log=$logs/$2.log begin=$SECONDS
+    shift 2
+    echo "$text"
+    if "$@" </dev/null >"$log" 2>&1; then
+        echo "    done in $((SECONDS - begin)) s"
+        return 0
+    fi
+    tail -n 40 "$log"
+    echo "    failed; the whole log is in $log"
+    failed=$((failed + 1))
+    return 1
+}
+
+configure_and_build() {
+    local preset=$1 target=$2
+    shift 2
+    cmake --preset "$preset" "$@" && cmake --build "build/$preset" --target "$target"
+}
+
+# Counts test cases in ctest's log of a build: GoogleTest's own where an entry has them, else the
+# entry itself. A crash counts as one failure.
+count_results() {
+    awk '
+        / Testing: / { ok = bad = 0 }
+        /^\[  PASSED  \] [0-9]+ test/ { ok = $4 }
+        /^\[  FAILED  \] [0-9]+ test/ { bad = $4 }
+        /^Test (Passed|Failed)\.$/ {
+            if ($2 == "Passed.") passed += ok ? ok : 1
+            else { passed += ok; failed += bad ? bad : 1 }
+        }
+        END { print passed + 0, failed + 0 }' "$1"
+}
+
+run_ctest() {
+    local build=build/$1 status=0 ok bad
+    echo "Running the tests of $build"
+    ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --no-tests=error || status=1
+    read -r ok bad < <(count_results "$build/Testing/Temporary/LastTest.log")
+    # A run that failed without a failing case (a missing program, say) is a failure all the same.
+    [ "$status" -eq 0 ] || [ "$bad" -gt 0 ] || bad=1
+    passed=$((passed + ok))
+    failed=$((failed + bad))
+}
+
+run_fuzz() {
+    local target
+    for target in fuzz/*_fuzz.cpp; do
+        target=$(basename "$target" .cpp)
+        step "Fuzzing $target for $fuzz_seconds s" "$target" \
+            fuzz/run.sh "$fuzz_seconds" build/fuzz "$target" && passed=$((passed + 1))
+    done
+}
+
+sanitized() {
+    local preset=$1
+    step "Building the tests with sanitizers ($preset)" "build-$preset" \
+        configure_and_build "$preset" all && run_ctest "$preset"
+}
+
+scripts/install-deps.sh build test || exit 1
+
+step "Building the scalar program" build-scalar \
+    configure_and_build scalar sightline-program -D SIGHTLINE_TESTS=OFF
+step "Building the program and the tests" build-release configure_and_build release all \
+    -D SIGHTLINE_TESTS=ON -D SIGHTLINE_SCALAR_PROGRAM="$PWD/build/scalar/bin/sightline" &&
+    run_ctest release
+sanitized asan-ubsan
+[ "$full" = no ] || sanitized tsan
+step "Building the fuzz targets" build-fuzz configure_and_build fuzz all && run_fuzz
+
+minutes=$((SECONDS / 60))
+if [ "$failed" -eq 0 ]; then
+    echo "make test: everything passed, in $minutes min $((SECONDS % 60)) s"
+else
+    echo "make test: something failed, in $minutes min $((SECONDS % 60)) s; logs in $logs"
+fi
+echo "$passed passed, $failed failed" | tee build/test-summary.txt
+[ "$failed" -eq 0 ]
