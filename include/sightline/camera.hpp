@@ -1,0 +1,102 @@
+// Cameras, projections and vanishing points.
+//
+// The camera looks along -z of its own space: `right`, `up` and `back` (= -gaze) are a right-handed
+// orthonormal frame. `depth` is the distance along the gaze from the eye, in the scene's unit, in
+// every projection. Pixel coordinates have their origin at the top left corner of the picture, x to
+// the right and y down; the centre of pixel (i, j) is (i + 1/2, j + 1/2).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sightline/error.hpp"
+
+namespace sightline {
+
+struct Box;
+
+enum class Projection { perspective, orthographic, cavalier, cabinet };
+
+enum class NamedView { front, back, left, right, top, bottom, isometric, dimetric, trimetric };
+
+/// What a user says about the camera; whatever is absent is chosen so that the whole scene is in
+/// view. Angles in degrees.
+struct CameraOptions {
+    std::optional<glm::dvec3> eye, target;
+    std::optional<glm::dvec3> up;         ///< default +Y
+    std::optional<glm::dvec3> direction;  ///< of the gaze, from the eye into the scene
+    std::optional<NamedView> view;        ///< default isometric
+    std::optional<Projection> projection;
+    std::optional<double> fov;            ///< vertical, in (0, 180); default 40
+    std::optional<double> ortho_height;   ///< height of a parallel view in the scene's unit
+    std::optional<double> oblique_angle;  ///< default 45, counter-clockwise from +x of the page
+    std::optional<double> zoom;           ///< default 1; enlarges about the centre
+    std::optional<double> near_plane, far_plane;  ///< depths; fitted to the scene when absent
+};
+
+/// Size of a picture in pixels.
+struct Resolution {
+    std::uint32_t width = 1024, height = 768;
+    friend bool operator==(const Resolution&, const Resolution&) = default;
+};
+
+/// A camera whose every number is decided. Build one with make_camera().
+struct Camera {
+    Projection projection = Projection::perspective;
+    Resolution resolution;
+    glm::dvec3 eye{0, 0, 0}, target{0, 0, -1};
+    glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};  ///< orthonormal, right-handed
+    double fov = 40;                                        ///< vertical, degrees; perspective only
+    double view_height = 2;    ///< of the view plane: at depth 1 in perspective, else in units
+    glm::dvec2 oblique{0, 0};  ///< shift on the page of a point one unit behind the target's plane
+    double near_plane = 1, far_plane = 2;  ///< depths, near < far; near > 0 in perspective
+
+    [[nodiscard]] bool is_perspective() const { return projection == Projection::perspective; }
+    [[nodiscard]] glm::dvec3 gaze() const { return -back; }
+    /// Pixels per unit of the view plane.
+    [[nodiscard]] double pixels_per_unit() const { return resolution.height / view_height; }
+    /// Distance of a point along the gaze.
+    [[nodiscard]] double depth_of(glm::dvec3 point) const;
+    /// Pixel coordinates of a point (meaningless at or behind the eye in perspective).
+    [[nodiscard]] glm::dvec2 pixel_of(glm::dvec3 point) const;
+    /// Direction in the world (not normalised) along which a point is seen: from the eye to it in
+    /// perspective, the direction of projection otherwise.
+    [[nodiscard]] glm::dvec3 view_vector(glm::dvec3 point) const;
+    /// The point of the world at a depth that projects onto a pixel coordinate.
+    [[nodiscard]] glm::dvec3 unproject(glm::dvec2 pixel, double depth) const;
+};
+
+/// Decides every number of a camera. `bounds` is the box of the scene, used to fit the view and the
+/// near and far planes. Errors (bad_option): fov outside (0, 180), near not below far, eye =
+/// target, up parallel to the gaze, heights, zooms or sizes that are not positive, values not
+/// finite.
+[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
+                                         Resolution resolution);
+
+/// The default camera of the benchmarks: box centre seen from (1, 0.6, 1.2), 2.2 bounding radii
+/// away, fov 40.
+[[nodiscard]] CameraOptions bench_camera(const Box& bounds);
+
+/// A vanishing point: pixel coordinates, or nothing when it lies at infinity (the direction is
+/// parallel to the view plane, or the projection is parallel).
+using VanishingPoint = std::optional<glm::dvec2>;
+
+/// Where lines of a direction of the world converge on the picture.
+[[nodiscard]] VanishingPoint vanishing_point(const Camera& camera, glm::dvec3 direction);
+
+/// Those of the world's x, y and z axes. How many are finite tells one-, two- and three-point
+/// perspective apart.
+[[nodiscard]] std::array<VanishingPoint, 3> principal_vanishing_points(const Camera& camera);
+
+[[nodiscard]] std::optional<Projection> parse_projection(std::string_view name);
+[[nodiscard]] std::string_view name_of(Projection projection);
+[[nodiscard]] std::optional<NamedView> parse_view(std::string_view name);
+[[nodiscard]] std::string_view name_of(NamedView view);
+
+}  // namespace sightline

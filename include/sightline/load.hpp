@@ -1,0 +1,40 @@
+// Loading models and scene descriptions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sightline/error.hpp"
+#include "sightline/scene.hpp"
+
+namespace sightline {
+
+struct LoadOptions {
+    /// Format of standard input, or an override of the extension: "obj", "ply", ... "" = by
+    /// extension.
+    std::string format;
+    /// Limits for the process that parses a foreign file.
+    double time_limit_seconds = 120;
+    std::size_t memory_limit_bytes = std::size_t{8} << 30;
+    std::size_t file_limit_bytes = std::size_t{4} << 30;
+};
+
+/// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input
+/// and needs LoadOptions::format. Foreign formats are parsed in a child process with limits on time
+/// and memory, so that no file can bring the caller down.
+/// Errors name the file, the cause and the way out. Not thread-safe against fork().
+[[nodiscard]] Result<Scene> load_scene(std::span<const std::string> paths,
+                                       const LoadOptions& options = {});
+
+/// The same from bytes in memory; `name` is used in messages, `format` is required.
+[[nodiscard]] Result<Scene> load_scene_from_memory(std::span<const std::byte> bytes,
+                                                   const std::string& name,
+                                                   const LoadOptions& options);
+
+/// Extensions (lower case, without the dot) that load_scene() reads, sorted.
+[[nodiscard]] std::vector<std::string> loadable_extensions();
+
+}  // namespace sightline

@@ -1,0 +1,140 @@
+// The canonical scene: what a camera makes of a Scene, in integers. Every visibility algorithm
+// reads this and nothing else, and every decision after it is exact.
+//
+// Units. x and y: 1/2^subpixel_bits pixel (8 bits unless the picture is too wide), origin at the
+// top left corner of the picture, y down. z: 0 (near plane) .. 2^30 - 1 (far plane), growing away.
+// In perspective z is linear in 1/depth, so planes of the world are planes on the screen.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "sightline/camera.hpp"
+#include "sightline/scene.hpp"
+
+namespace sightline {
+
+inline constexpr int kDepthBits = 30;  ///< Z of docs/exactness.md
+inline constexpr std::int32_t kDepthMax = (std::int32_t{1} << kDepthBits) - 1;
+inline constexpr int kCoordBits = 23;  ///< b: extent of x and y, guard band included
+
+/// A snapped point.
+struct ScreenPoint {
+    std::int32_t x = 0, y = 0, z = 0;
+    friend bool operator==(const ScreenPoint&, const ScreenPoint&) = default;
+};
+
+/// A plane through a snapped point: c * (z - at.z) = a * (x - at.x) + b * (y - at.y), c >= 0.
+/// c = 0: the plane is seen edge-on and has no depth. |a|, |b| < 2^(b+Z+1), c < 2^(2b+1).
+struct Plane {
+    std::int64_t a = 0, b = 0, c = 0;
+    ScreenPoint at;
+    friend bool operator==(const Plane&, const Plane&) = default;
+};
+
+enum class Cull { automatic, none, back, front };
+
+/// How many triangles project() dropped, and why; for `--stats`.
+struct ProjectCounts {
+    std::uint64_t triangles = 0;    ///< in the scene
+    std::uint64_t degenerate = 0;   ///< no area in the world
+    std::uint64_t back_facing = 0;  ///< of all; counted only when culling is considered
+    std::uint64_t culled = 0;       ///< removed because of the side they show
+    std::uint64_t outside = 0;      ///< wholly outside of the view volume
+    std::uint64_t clipped = 0;      ///< cut by near, far or the guard band
+    std::uint64_t pieces = 0;       ///< triangles that came of the cuts
+};
+
+struct ProjectOptions {
+    Cull cull = Cull::automatic;
+    int threads = 0;  ///< 0 = all cores
+};
+
+/// Read-only once made; any number of threads may use it. Refers to its Scene, which must outlive
+/// it and stay unchanged.
+class ScreenScene {
+public:
+    // -- triangles ---------------------------------------------------------------------------
+    // Screen triangles 0 .. scene().triangle_count()-1 are those of the scene; further ones are
+    // pieces of clipped triangles. A dropped or clipped triangle is not drawable.
+
+    [[nodiscard]] std::uint32_t triangle_count() const {
+        return scene_->triangle_count() + static_cast<std::uint32_t>(pieces_.size());
+    }
+    [[nodiscard]] bool drawable(std::uint32_t k) const {
+        return k >= scene_->triangle_count() || skip_.empty() || skip_[k] == 0;
+    }
+    /// Indices of the corners of screen triangle k into the snapped points.
+    [[nodiscard]] Corners corners(std::uint32_t k) const {
+        const std::uint32_t n = scene_->triangle_count();
+        return k < n ? scene_->triangles[k] : pieces_[k - n];
+    }
+    /// The triangle of the scene that screen triangle k is, or is a piece of.
+    [[nodiscard]] std::uint32_t id(std::uint32_t k) const {
+        const std::uint32_t n = scene_->triangle_count();
+        return k < n ? k : piece_ids_[k - n];
+    }
+    [[nodiscard]] ScreenPoint point(std::uint32_t index) const {
+        return {x_[index], y_[index], z_[index]};
+    }
+
+    // -- planes ------------------------------------------------------------------------------
+
+    /// The plane that decides the depth of a triangle of the scene (by id). Triangles of one sheet
+    /// have equal planes. Defined for triangles that are drawable or have pieces.
+    [[nodiscard]] Plane plane(std::uint32_t id) const;
+    /// Sheet of a triangle when its shared plane is in force in this view, else kNone. Two
+    /// triangles with the same shared plane tie everywhere.
+    [[nodiscard]] std::uint32_t shared_plane(std::uint32_t id) const {
+        const std::uint32_t sheet = scene_->sheets.of(id);
+        return sheet != kNone && sheet_planes_[sheet].c != 0 ? sheet : kNone;
+    }
+
+    // -- the view ----------------------------------------------------------------------------
+
+    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] const Camera& camera() const { return camera_; }
+    [[nodiscard]] Resolution resolution() const { return camera_.resolution; }
+    [[nodiscard]] int subpixel_bits() const { return subpixel_bits_; }
+    [[nodiscard]] const ProjectCounts& counts() const { return counts_; }
+
+    /// Metric depth (distance along the gaze) of a value of z. Uses only + - * /, so it gives the
+    /// same bits everywhere.
+    [[nodiscard]] double metric_depth(double z) const;
+
+    // -- structure of arrays, for algorithms that take many triangles at a time ----------------
+
+    [[nodiscard]] std::span<const std::int32_t> xs() const { return x_; }
+    [[nodiscard]] std::span<const std::int32_t> ys() const { return y_; }
+    [[nodiscard]] std::span<const std::int32_t> zs() const { return z_; }
+    /// One byte a triangle of the scene, not 0 = not drawable; empty when all are drawable.
+    [[nodiscard]] std::span<const std::uint8_t> skip() const { return skip_; }
+    /// Corners of the pieces: screen triangle scene().triangle_count() + i is pieces()[i].
+    [[nodiscard]] std::span<const Corners> pieces() const { return pieces_; }
+
+private:
+    friend class Projector;
+
+    const Scene* scene_ = nullptr;
+    Camera camera_;
+    int subpixel_bits_ = 8;
+    ProjectCounts counts_;
+    std::vector<std::int32_t> x_, y_, z_;  // snapped positions of the scene, then clip points
+    std::vector<std::uint8_t> skip_;
+    std::vector<Corners> pieces_;           // of clipped triangles
+    std::vector<std::uint32_t> piece_ids_;  // the triangle of each piece, ascending
+    std::vector<Plane> sheet_planes_;
+    std::unordered_map<std::uint32_t, Plane> clipped_planes_;  // of clipped triangles, by id
+};
+
+/// Transforms, clips and snaps a finished scene. O(positions + triangles), on all cores; the result
+/// does not depend on the number of threads or the vector width.
+/// Error (bad_option): a picture too wide for the coordinates (over 65,536 a side).
+[[nodiscard]] Result<ScreenScene> project(const Scene& scene, const Camera& camera,
+                                          const ProjectOptions& options = {});
+
+}  // namespace sightline

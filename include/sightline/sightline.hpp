@@ -1,0 +1,11 @@
+// Everything of the library: scene, camera, canonical screen scene, visibility, shading, pictures.
+#pragma once
+
+#include "sightline/camera.hpp"        // IWYU pragma: export
+#include "sightline/error.hpp"         // IWYU pragma: export
+#include "sightline/image.hpp"         // IWYU pragma: export
+#include "sightline/load.hpp"          // IWYU pragma: export
+#include "sightline/scene.hpp"         // IWYU pragma: export
+#include "sightline/screen_scene.hpp"  // IWYU pragma: export
+#include "sightline/shading.hpp"       // IWYU pragma: export
+#include "sightline/visibility.hpp"    // IWYU pragma: export
