@@ -1,0 +1,19 @@
+// What the algorithms' files offer to the registry, one function a file, and what they share.
+#pragma once
+
+#include <string_view>
+
+#include "sightline/visibility.hpp"
+
+namespace sightline {
+
+// Each fills out.ids and out.depth, which resolve() has given the size of out.grid.
+void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
+void resolve_zbuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
+
+/// Adds a counter, when somebody wants them.
+inline void count(const ResolveOptions& options, std::string_view name, std::uint64_t value) {
+    if (options.counters != nullptr) options.counters->push_back({std::string(name), value});
+}
+
+}  // namespace sightline

@@ -1,0 +1,44 @@
+// Every vector width that this machine has gives the same bits.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstring>
+
+#include "support/scenes.hpp"
+
+namespace sightline {
+namespace {
+
+using namespace testing;
+
+TEST(Targets, EveryVectorWidthGivesTheSameBits) {
+    const std::int64_t all = hwy::SupportedTargets();
+    int tried = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const Scene scene = seed == 0 ? sphere_scene(80, 120) : hostile_scene(seed);
+        const Camera camera = hostile_camera(scene, seed, {150, 110});
+        Visibility first;
+        std::vector<std::int32_t> first_xs;
+        tried = 0;
+        for (std::int64_t rest = all; rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+            const ScreenScene screen = must(project(scene, camera, {Cull::none, 1}));
+            const Visibility seen = run("zbuffer", screen);
+            const std::vector<std::int32_t> xs(screen.xs().begin(), screen.xs().end());
+            if (tried++ == 0) {
+                first = seen;
+                first_xs = xs;
+            }
+            EXPECT_EQ(count_differences(first, seen), 0u) << seed;
+            EXPECT_EQ(first_xs, xs) << seed;
+        }
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    RecordProperty("targets", tried);
+    EXPECT_GE(tried, 1);
+}
+
+}  // namespace
+}  // namespace sightline
