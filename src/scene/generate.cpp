@@ -1,0 +1,228 @@
+// Growing scenes: 1-to-4 subdivision, repetition, random triangles. The arithmetic on positions is
+// that of single precision throughout (see the header), in a fixed order of operations.
+#include "sightline/generate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace sightline {
+namespace {
+
+Error too_large(const char* what) {
+    return {ErrorKind::bad_option,
+            std::string(what) + " makes more than 2^30 triangles; ask for less"};
+}
+
+/// The middles of the sides of an indexed attribute, each made once.
+template <class T, class Middle>
+class SideMiddles {
+public:
+    SideMiddles(std::vector<T>& values, Middle middle, std::size_t expected)
+        : values_(values), middle_(middle) {
+        index_.reserve(expected);
+    }
+    std::uint32_t operator()(std::uint32_t a, std::uint32_t b) {
+        if (a > b) std::swap(a, b);
+        const auto fresh = static_cast<std::uint32_t>(values_.size());
+        const auto [entry, is_new] = index_.try_emplace(std::uint64_t{a} << 32 | b, fresh);
+        if (is_new) values_.push_back(middle_(values_[a], values_[b]));
+        return entry->second;
+    }
+
+private:
+    std::vector<T>& values_;
+    Middle middle_;
+    std::unordered_map<std::uint64_t, std::uint32_t> index_;
+};
+
+/// The four children of each triangle, in one index array; kNone (no attribute) is inherited.
+template <class T, class Middle>
+std::vector<Corners> split_corners(const std::vector<Corners>& corners, std::vector<T>& values,
+                                   Middle middle) {
+    std::vector<Corners> children;
+    children.reserve(corners.size() * 4);
+    SideMiddles<T, Middle> mid(values, middle, corners.size() * 3 / 2 + 16);
+    for (const Corners& t : corners) {
+        if (t.x == kNone || t.y == kNone || t.z == kNone) {
+            children.insert(children.end(), 4, Corners(kNone));
+            continue;
+        }
+        const std::uint32_t ab = mid(t.x, t.y), bc = mid(t.y, t.z), ca = mid(t.z, t.x);
+        children.insert(children.end(),
+                        {{t.x, ab, ca}, {ab, t.y, bc}, {ca, bc, t.z}, {ab, bc, ca}});
+    }
+    return children;
+}
+
+double middle_of(double a, double b) {
+    return double{0.5f * (static_cast<float>(a) + static_cast<float>(b))};
+}
+
+glm::vec3 middle_normal(glm::vec3 a, glm::vec3 b) {
+    const glm::vec3 sum = a + b;
+    const float length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
+    return length > 0 ? sum / length : a;  // opposite normals have no middle
+}
+
+/// Sides of a child that lie on a side of the source polygon. Bit k: from corner k to k + 1.
+std::array<std::uint8_t, 4> child_edges(std::uint8_t parent) {
+    const auto bit = [&](unsigned side) { return (parent >> side) & 1u; };
+    const auto bits = [](unsigned s0, unsigned s1, unsigned s2) {
+        return static_cast<std::uint8_t>(s0 | s1 << 1 | s2 << 2);
+    };
+    return {bits(bit(0), 0, bit(2)), bits(bit(0), bit(1), 0), bits(0, bit(1), bit(2)), 0};
+}
+
+Scene subdivide_once(Scene scene) {
+    scene.triangles =
+        split_corners(scene.triangles, scene.positions, [](glm::dvec3 a, glm::dvec3 b) {
+            return glm::dvec3(middle_of(a.x, b.x), middle_of(a.y, b.y), middle_of(a.z, b.z));
+        });
+    scene.triangle_normals = split_corners(scene.triangle_normals, scene.normals, middle_normal);
+    scene.triangle_colors = split_corners(scene.triangle_colors, scene.colors,
+                                          [](glm::vec4 a, glm::vec4 b) { return 0.5f * (a + b); });
+    std::vector<std::uint32_t> polygons;
+    for (const std::uint32_t polygon : scene.triangle_polygon)
+        polygons.insert(polygons.end(), 4, polygon);
+    scene.triangle_polygon = std::move(polygons);
+    std::vector<std::uint8_t> edges;
+    for (const std::uint8_t parent : scene.polygon_edges) {
+        const auto children = child_edges(parent);
+        edges.insert(edges.end(), children.begin(), children.end());
+    }
+    scene.polygon_edges = std::move(edges);
+    for (Object& object : scene.objects) {
+        object.first_triangle *= 4;
+        object.triangle_count *= 4;
+    }
+    return scene;
+}
+
+/// Appends `part` moved by `offset`; its materials, lights and camera are those of `scene`.
+void append_copy(Scene& scene, const Scene& part, glm::dvec3 offset) {
+    const auto size = [](const auto& values) { return static_cast<std::uint32_t>(values.size()); };
+    const std::uint32_t first_position = size(scene.positions),
+                        first_triangle = size(scene.triangles);
+    const std::uint32_t first_normal = size(scene.normals), first_color = size(scene.colors);
+    const std::uint32_t first_polygon =
+        scene.objects.empty()
+            ? 0
+            : scene.objects.back().first_polygon + scene.objects.back().polygon_count;
+    const auto shifted = [](const Corners& c, std::uint32_t by) {
+        return c.x == kNone ? c : c + by;
+    };
+    for (const glm::dvec3& p : part.positions) {
+        const glm::vec3 moved = p + offset;  // rounds to float
+        scene.positions.emplace_back(moved);
+    }
+    for (const Corners& c : part.triangles) scene.triangles.push_back(c + first_position);
+    for (const Corners& c : part.triangle_normals) {
+        scene.triangle_normals.push_back(shifted(c, first_normal));
+    }
+    for (const Corners& c : part.triangle_colors) {
+        scene.triangle_colors.push_back(shifted(c, first_color));
+    }
+    for (const std::uint32_t p : part.triangle_polygon) {
+        scene.triangle_polygon.push_back(p + first_polygon);
+    }
+    const auto append = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(scene.normals, part.normals);
+    append(scene.colors, part.colors);
+    append(scene.polygon_edges, part.polygon_edges);
+    for (Object object : part.objects) {
+        object.first_triangle += first_triangle;
+        object.first_polygon += first_polygon;
+        scene.objects.push_back(std::move(object));
+    }
+    scene.counts.concave_polygons += part.counts.concave_polygons;
+    scene.counts.ignored_primitives += part.counts.ignored_primitives;
+}
+
+/// A linear congruential generator (Knuth's MMIX), for numbers that are the same everywhere.
+class Random {
+public:
+    explicit Random(std::uint32_t seed) : state_(seed) {}
+    /// In [0, 1), a multiple of 2^-24.
+    double next() {
+        state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(state_ >> 40) * 0x1p-24;
+    }
+    glm::dvec3 point() {
+        const double x = next(), y = next(), z = next();
+        return {x, y, z};
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+}  // namespace
+
+Result<Scene> subdivide(const Scene& scene, int times) {
+    if (times < 0)
+        return Error{ErrorKind::bad_option, "a mesh can't be subdivided less than 0 times"};
+    std::uint64_t triangles = scene.triangle_count();
+    for (int i = 0; i < times; ++i) {
+        triangles *= 4;
+        if (triangles > kMaxGeneratedTriangles) return too_large("subdividing so often");
+    }
+    Scene result = scene;
+    for (int i = 0; i < times; ++i) result = subdivide_once(std::move(result));
+    if (times > 0) finish_scene(result);
+    return result;
+}
+
+Result<Scene> repeat(const Scene& scene, const RepeatOptions& options) {
+    if (options.copies == 0)
+        return Error{ErrorKind::bad_option, "a scene can't be repeated 0 times"};
+    if (std::uint64_t{scene.triangle_count()} * options.copies > kMaxGeneratedTriangles) {
+        return too_large("repeating so often");
+    }
+    Scene result;
+    result.materials = scene.materials;
+    result.lights = scene.lights;
+    result.camera = scene.camera;
+    result.positions.reserve(scene.positions.size() * options.copies);
+    result.triangles.reserve(scene.triangles.size() * options.copies);
+    for (std::uint32_t i = 0; i < options.copies; ++i) {
+        const std::uint32_t moved = options.farthest_first ? options.copies - 1 - i : i;
+        append_copy(result, scene, static_cast<double>(moved) * options.step);
+    }
+    finish_scene(result);
+    return result;
+}
+
+Result<Scene> random_triangles(std::uint32_t count, std::uint32_t seed) {
+    if (count == 0) return Error{ErrorKind::bad_option, "a scene needs at least 1 triangle"};
+    if (count > kMaxGeneratedTriangles) return too_large("generating so many");
+    Scene scene;
+    Random random(seed);
+    // A triangle with corners spread over a cube of side s has an area of about s^2 / 4 on a page.
+    const double spread = std::sqrt(16.0 / std::max(count, 16u));
+    for (std::uint32_t t = 0; t < count; ++t) {
+        const glm::dvec3 base = random.point() * (1 - spread);
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 corner = base + spread * random.point();  // rounds to float
+            scene.positions.emplace_back(corner);
+        }
+        scene.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
+        scene.triangle_polygon.push_back(t);
+    }
+    scene.polygon_edges.assign(count, 7);
+    scene.materials.emplace_back();
+    Object object;
+    object.name = "random";
+    object.triangle_count = object.polygon_count = count;
+    scene.objects.push_back(std::move(object));
+    finish_scene(scene);
+    return scene;
+}
+
+}  // namespace sightline

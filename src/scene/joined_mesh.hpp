@@ -1,0 +1,65 @@
+// An object's triangles on joined positions: corners at equal positions share one index.
+//
+// Positions are equal when their bits are, after -0 has become +0: the tolerance is none, so
+// joining never moves a point and never depends on an order.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "sightline/scene.hpp"
+
+namespace sightline {
+
+/// Appends distinct positions to a vector: a hash table over what it has appended itself.
+class PositionJoiner {
+public:
+    /// `points` must outlive the joiner; what it holds already takes no part in the joining.
+    explicit PositionJoiner(std::vector<glm::dvec3>& points);
+
+    /// Index in `points` of this position, appended when new. Amortised O(1).
+    /// Precondition: finite; fewer than 2^32 - 1 points.
+    std::uint32_t add(glm::dvec3 position);
+
+private:
+    void grow();
+    [[nodiscard]] std::size_t slot_of(const glm::dvec3& position) const;
+
+    std::vector<glm::dvec3>& points_;
+    std::size_t base_;                  ///< first point of this joiner
+    std::vector<std::uint32_t> slots_;  ///< index of a point, or kNone; a power of two long
+};
+
+/// Triangles of one object on its own joined points.
+struct JoinedMesh {
+    std::vector<glm::dvec3> points;
+    std::vector<Corners> triangles;  ///< in the object's order
+};
+
+/// Joins the objects of a scene one after another with one piece of scratch memory. Not
+/// thread-safe.
+class ObjectJoiner {
+public:
+    explicit ObjectJoiner(const Scene& scene);
+    [[nodiscard]] JoinedMesh join(const Object& object);
+
+private:
+    const Scene& scene_;
+    std::vector<std::uint32_t> joined_;  ///< of each scene position, or kNone between two calls
+};
+
+/// Two corners equal, or a cross product of two sides that is exactly zero in doubles.
+[[nodiscard]] bool is_degenerate(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// Corners grouped by the vertex they stand at: those of vertex v are
+/// corners[first[v]] .. corners[first[v + 1] - 1], in ascending order; corner k of triangle t is
+/// 3 t + k.
+struct CornersOfVertices {
+    std::vector<std::uint64_t> first;
+    std::vector<std::uint64_t> corners;
+
+    CornersOfVertices(const JoinedMesh& mesh);
+};
+
+}  // namespace sightline

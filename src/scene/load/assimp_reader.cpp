@@ -1,0 +1,210 @@
+// assimp does not triangulate or join here, and bakes no transform: with its own passes switched
+// off a file's meshes, faces and vertices arrive as they were stored.
+#include "scene/load/assimp_reader.hpp"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <assimp/mesh.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <memory>
+#include <string_view>
+
+#include "scene/load/text.hpp"
+
+namespace sightline::load {
+namespace {
+
+/// Shows assimp a file under a name whose extension is the wanted format.
+class RenamedFile : public Assimp::DefaultIOSystem {
+public:
+    RenamedFile(std::string alias, std::string path)
+        : alias_(std::move(alias)), path_(std::move(path)) {}
+    bool Exists(const char* file) const override { return DefaultIOSystem::Exists(real(file)); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        return DefaultIOSystem::Open(real(file), mode);
+    }
+
+private:
+    [[nodiscard]] const char* real(const char* file) const {
+        return file == alias_ ? path_.c_str() : file;
+    }
+    std::string alias_, path_;
+};
+
+/// Keeps the last error that assimp logs while it goes on reading.
+class ErrorLog : public Assimp::LogStream {
+public:
+    void write(const char* message) override {
+        const std::string_view text = message;  // "Error, T0: OFF: ..."
+        const std::size_t prefix = text.find(": ");
+        last = one_line(text.substr(prefix == std::string_view::npos ? 0 : prefix + 2));
+    }
+    std::string last;
+};
+
+/// assimp logs that a count or an index in such a file is wrong, makes up something and goes on.
+bool logged_errors_count(const std::string& format) { return format == "off"; }
+
+bool is_linear(const std::string& format) {
+    return format == "gltf" || format == "glb" || format == "vrm";
+}
+
+glm::dmat4 matrix_of(const aiMatrix4x4& m) {
+    // glm's constructor takes columns.
+    return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2,
+            m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
+}
+
+/// How opaque a material is: glTF says by its mode whether alpha counts at all. In other formats a
+/// surface that nobody could ever see (opacity 0) is a known fault of exporters.
+float opacity_of(const aiMaterial& material, float alpha) {
+    aiString mode;
+    if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS) {
+        return std::string_view(mode.C_Str()) == "BLEND" ? alpha : 1.0f;
+    }
+    float opacity = 1;
+    material.Get(AI_MATKEY_OPACITY, opacity);
+    return opacity > 0 ? opacity : 1.0f;
+}
+
+Material material_of(const aiMaterial& from) {
+    Material material;
+    material.name = from.GetName().C_Str();
+    aiColor4D color(1, 1, 1, 1);
+    if (from.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
+        from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS) {
+        material.base_color = {color.r, color.g, color.b};
+    }
+    material.opacity = opacity_of(from, color.a);
+    return material;
+}
+
+/// assimp invents a material for files that have none; ours is to be used instead.
+bool is_invented(const aiMaterial& material) {
+    return std::string_view(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME;
+}
+
+void append_faces(const aiMesh& from, SoupMesh& mesh, std::uint64_t& ignored) {
+    mesh.polygon_sizes.reserve(from.mNumFaces);
+    mesh.corners.reserve(std::size_t{3} * from.mNumFaces);
+    for (unsigned f = 0; f < from.mNumFaces; ++f) {
+        const aiFace& face = from.mFaces[f];
+        if (face.mNumIndices < 3) {
+            ++ignored;
+            continue;
+        }
+        mesh.polygon_sizes.push_back(face.mNumIndices);
+        mesh.corners.insert(mesh.corners.end(), face.mIndices, face.mIndices + face.mNumIndices);
+    }
+}
+
+SoupMesh mesh_of(const aiMesh& from, std::uint64_t& ignored) {
+    SoupMesh mesh;
+    mesh.name = from.mName.C_Str();
+    if (from.mVertices == nullptr) return mesh;
+    append_faces(from, mesh, ignored);
+    const auto vector_of = [](const aiVector3D& v) { return glm::vec3(v.x, v.y, v.z); };
+    mesh.positions.resize(from.mNumVertices);
+    std::transform(from.mVertices, from.mVertices + from.mNumVertices, mesh.positions.begin(),
+                   vector_of);
+    if (from.mNormals != nullptr) {
+        mesh.normals.resize(from.mNumVertices);
+        std::transform(from.mNormals, from.mNormals + from.mNumVertices, mesh.normals.begin(),
+                       vector_of);
+    }
+    if (from.mColors[0] != nullptr) {
+        mesh.colors.resize(from.mNumVertices);
+        std::transform(from.mColors[0], from.mColors[0] + from.mNumVertices, mesh.colors.begin(),
+                       [](const aiColor4D& c) { return glm::vec4(c.r, c.g, c.b, c.a); });
+    }
+    return mesh;
+}
+
+/// The node's name if a user knows it (assimp invents names such as <STL_BINARY>), else the mesh's.
+std::string object_name(const aiNode& node, const SoupMesh& mesh) {
+    const std::string name = node.mName.C_Str();
+    const bool own =
+        !name.empty() && name.front() != '<' && (node.mNumMeshes == 1 || mesh.name.empty());
+    return own ? name : mesh.name;
+}
+
+void append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
+    const glm::dmat4 transform = above * matrix_of(node.mTransformation);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        const std::uint32_t mesh = node.mMeshes[i];
+        if (mesh >= soup.meshes.size()) continue;
+        soup.objects.push_back({object_name(node, soup.meshes[mesh]), mesh, transform});
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) {
+        append_nodes(*node.mChildren[i], transform, soup);
+    }
+}
+
+Soup soup_of(const aiScene& scene, const std::string& format) {
+    Soup soup;
+    soup.srgb_colors = !is_linear(format);
+    std::vector<std::uint32_t> numbers(scene.mNumMaterials, kNone);
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+        if (is_invented(*scene.mMaterials[i])) continue;
+        numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
+        soup.materials.push_back(material_of(*scene.mMaterials[i]));
+    }
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        const aiMesh& mesh = *scene.mMeshes[i];
+        soup.meshes.push_back(mesh_of(mesh, soup.ignored_primitives));
+        if (mesh.mMaterialIndex < numbers.size()) {
+            soup.meshes.back().material = numbers[mesh.mMaterialIndex];
+        }
+    }
+    if (scene.mRootNode != nullptr) append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup);
+    return soup;
+}
+
+const aiScene* import(Assimp::Importer& importer, const Source& source) {
+    if (source.path.empty()) {
+        return importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), 0,
+                                           source.format.c_str());
+    }
+    if (extension_of(source.path) == source.format) return importer.ReadFile(source.path, 0);
+    const std::string alias = source.path + "." + source.format;
+    importer.SetIOHandler(new RenamedFile(alias, source.path));  // the importer deletes it
+    return importer.ReadFile(alias, 0);
+}
+
+}  // namespace
+
+std::vector<std::string> assimp_extensions() {
+    const Assimp::Importer importer;
+    aiString all;
+    importer.GetExtensionList(all);
+    std::vector<std::string> extensions;
+    std::string_view rest = all.C_Str();
+    while (!rest.empty()) {
+        const std::size_t end = std::min(rest.find(';'), rest.size());
+        const std::string_view pattern = rest.substr(0, end);
+        extensions.emplace_back(pattern.substr(pattern.rfind('.') + 1));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    std::ranges::sort(extensions);
+    extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
+    return extensions;
+}
+
+std::variant<Soup, std::string> read_with_assimp(const Source& source) {
+    auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    auto* const errors = new ErrorLog;  // the logger deletes it
+    logger->attachStream(errors, Assimp::Logger::Err);
+    Assimp::Importer importer;
+    const aiScene* scene = import(importer, source);
+    if (scene == nullptr) return one_line(importer.GetErrorString());
+    if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
+    return soup_of(*scene, source.format);
+}
+
+}  // namespace sightline::load

@@ -1,0 +1,89 @@
+#include "scene/load/input.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace sightline::load {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+Error refused(const std::string& name, int error) {
+    const char* const way_out = error == ENOENT ? "check the path" : "check its permissions";
+    return {ErrorKind::io,
+            fmt::format("{}: cannot read it: {}; {}", name, std::strerror(error), way_out)};
+}
+
+Error too_large(const std::string& name, std::size_t limit) {
+    return {ErrorKind::bad_input,
+            fmt::format("{}: more than {} MiB; use a smaller model or raise the "
+                        "limit on file size",
+                        name, limit >> 20)};
+}
+
+/// Appends up to `size` bytes of what is left of a file.
+Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::size_t size) {
+    std::vector<std::byte> bytes;
+    while (bytes.size() < size) {
+        const std::size_t before = bytes.size();
+        bytes.resize(before + std::min(kChunk, size - before));
+        ssize_t got = 0;
+        do got = read(fd, bytes.data() + before, bytes.size() - before);
+        while (got < 0 && errno == EINTR);
+        if (got < 0) return refused(name, errno);
+        bytes.resize(before + static_cast<std::size_t>(got));
+        if (got == 0) break;
+    }
+    return bytes;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, std::size_t limit) {
+    Result<std::vector<std::byte>> bytes = read_up_to(fd, name, limit + 1);
+    if (bytes && bytes->size() > limit) return too_large(name, limit);
+    return bytes;
+}
+
+Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) return refused(path, errno);
+    InputFile file(fd, path, limit);
+    struct stat info {};
+    if (fstat(fd, &info) != 0) return refused(path, errno);
+    if (S_ISDIR(info.st_mode)) {
+        return Error{ErrorKind::bad_input,
+                     fmt::format("{}: it is a folder; name a model file in it", path)};
+    }
+    file.regular_ = S_ISREG(info.st_mode);
+    if (file.regular_ && static_cast<std::size_t>(info.st_size) > limit)
+        return too_large(path, limit);
+    return file;
+}
+
+InputFile::InputFile(InputFile&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)),
+      path_(std::move(other.path_)),
+      limit_(other.limit_),
+      regular_(other.regular_) {}
+
+InputFile::~InputFile() {
+    if (fd_ >= 0) close(fd_);
+}
+
+Result<std::vector<std::byte>> InputFile::read_all() const {
+    return read_descriptor(fd_, path_, limit_);
+}
+
+Result<std::vector<std::byte>> InputFile::read_beginning(std::size_t size) const {
+    return read_up_to(fd_, path_, size);
+}
+
+}  // namespace sightline::load

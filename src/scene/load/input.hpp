@@ -1,0 +1,42 @@
+// Reading files whole or in part, with a limit on their size.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sightline/error.hpp"
+
+namespace sightline::load {
+
+/// Everything up to the end of an open file; bad_input when there is more than `limit` bytes, io
+/// when the system refuses.
+[[nodiscard]] Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name,
+                                                             std::size_t limit);
+
+/// A file open for reading. Movable; closes itself.
+class InputFile {
+public:
+    /// Errors: io when it is missing or may not be read; bad_input when it is a folder, or a
+    /// regular file of more than `limit` bytes.
+    [[nodiscard]] static Result<InputFile> open(const std::string& path, std::size_t limit);
+    InputFile(InputFile&& other) noexcept;
+    InputFile& operator=(InputFile&&) = delete;
+    ~InputFile();
+
+    [[nodiscard]] bool is_regular() const { return regular_; }
+    [[nodiscard]] Result<std::vector<std::byte>> read_all() const;
+    /// The first `size` bytes, or as many as there are. Precondition: nothing read yet.
+    [[nodiscard]] Result<std::vector<std::byte>> read_beginning(std::size_t size) const;
+
+private:
+    InputFile(int fd, std::string path, std::size_t limit)
+        : fd_(fd), path_(std::move(path)), limit_(limit) {}
+
+    int fd_;
+    std::string path_;
+    std::size_t limit_;
+    bool regular_ = false;
+};
+
+}  // namespace sightline::load

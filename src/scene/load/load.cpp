@@ -1,0 +1,258 @@
+// The entry: which file, which format, which reader; everything else is done elsewhere.
+#include "sightline/load.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <new>
+#include <string_view>
+#include <variant>
+
+#include "scene/load/assimp_reader.hpp"
+#include "scene/load/build.hpp"
+#include "scene/load/contained.hpp"
+#include "scene/load/input.hpp"
+#include "scene/load/ply_header.hpp"
+#include "scene/load/scene_file.hpp"
+#include "scene/load/text.hpp"
+
+namespace sightline {
+namespace load {
+namespace {
+
+// What the child sends: one of these, then a soup or a message.
+constexpr std::byte kSoup{0}, kMessage{1};
+
+Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
+
+std::vector<std::byte> read_in_child(const Source& source) {
+    std::variant<Soup, std::string> read = read_with_assimp(source);
+    std::vector<std::byte> bytes;
+    if (const Soup* soup = std::get_if<Soup>(&read)) {
+        bytes = serialise(*soup);
+        bytes.push_back(kSoup);  // at the end, where it costs nothing
+    } else {
+        const std::string& message = *std::get_if<std::string>(&read);
+        const auto text = std::as_bytes(std::span(message));
+        bytes.assign(text.begin(), text.end());
+        bytes.push_back(kMessage);
+    }
+    return bytes;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
+    const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};
+    const Result<MappedBytes> mapped =
+        run_contained([&] { return read_in_child(source); }, limits, source.name);
+    if (!mapped) return mapped.error();
+    const std::span<const std::byte> bytes = mapped->bytes();
+    if (!bytes.empty() && bytes.back() == kMessage) {
+        return bad_input(fmt::format("{}: not a readable {} file ({}); check or export it again",
+                                     source.name, source.format,
+                                     one_line(text_of(bytes.first(bytes.size() - 1)))));
+    }
+    std::optional<Soup> soup;
+    if (!bytes.empty()) soup = deserialise(bytes.first(bytes.size() - 1));
+    if (!soup) {
+        return bad_input(
+            fmt::format("{}: the file is damaged: its reader returned nonsense; export "
+                        "it again or convert it to another format",
+                        source.name));
+    }
+    return std::move(*soup);
+}
+
+Error unknown_format(const std::string& name, const std::string& format) {
+    const std::string what =
+        format.empty() ? "no extension that tells its format" : "unknown format '" + format + "'";
+    return bad_input(
+        fmt::format("{}: {}; known ones are obj, ply, stl, off, gltf, glb, dae, fbx, 3ds, "
+                    "json and more (or name it with --format)",
+                    name, what));
+}
+
+/// Loads one file after another into one scene.
+class Loader {
+public:
+    explicit Loader(const LoadOptions& options)
+        : options_(options), builder_(options.memory_limit_bytes) {}
+
+    [[nodiscard]] Status add_path(const std::string& path);
+    [[nodiscard]] Status add_bytes(std::span<const std::byte> bytes, const std::string& name,
+                                   const std::string& format);
+    /// The finished scene; `name` is the file to blame when all of it is one point.
+    [[nodiscard]] Result<Scene> finish(const std::string& name);
+
+private:
+    [[nodiscard]] Status add_file(const std::string& path, const std::string& format,
+                                  Placement placement);
+    [[nodiscard]] Status add_source(const Source& source, std::string_view beginning,
+                                    const Placement& placement);
+    [[nodiscard]] Status add_scene(std::string_view text, const std::string& name,
+                                   const std::filesystem::path& folder);
+
+    const LoadOptions& options_;
+    SceneBuilder builder_;
+    std::vector<Light> lights_;
+    std::optional<CameraOptions> camera_;
+};
+
+Placement placement_of(const std::string& name) {
+    Placement placement;
+    placement.file = name;
+    placement.default_name = stem_of(name);
+    return placement;
+}
+
+Status Loader::add_path(const std::string& path) {
+    if (path == "-") {
+        if (options_.format.empty()) {
+            return Error{ErrorKind::bad_option,
+                         "standard input: its format is not known; name it with --format, such as "
+                         "--format obj"};
+        }
+        const Result<std::vector<std::byte>> bytes =
+            read_descriptor(STDIN_FILENO, "standard input", options_.file_limit_bytes);
+        if (!bytes) return bytes.error();
+        return add_bytes(*bytes, "standard input", options_.format);
+    }
+    const std::string format = options_.format.empty() ? extension_of(path) : options_.format;
+    return add_file(path, format, placement_of(path));
+}
+
+Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& name,
+                         const std::string& format) {
+    if (bytes.empty()) return bad_input(fmt::format("{}: it is empty; give it a model", name));
+    if (format == "json") return add_scene(text_of(bytes), name, {});
+    return add_source({name, "", format, bytes}, text_of(bytes), placement_of(name));
+}
+
+Status Loader::add_file(const std::string& path, const std::string& format, Placement placement) {
+    Result<InputFile> file = InputFile::open(path, options_.file_limit_bytes);
+    if (!file) return file.error();
+    const bool is_scene = format == "json";
+    // What is no regular file (a pipe) can be read only once, and from its beginning.
+    if (is_scene || !file->is_regular()) {
+        const Result<std::vector<std::byte>> bytes = file->read_all();
+        if (!bytes) return bytes.error();
+        if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
+        if (is_scene) {
+            return add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
+        }
+        return add_source({path, "", format, *bytes}, text_of(*bytes), placement);
+    }
+    const Result<std::vector<std::byte>> beginning = file->read_beginning(kPlyHeaderBytes);
+    if (!beginning) return beginning.error();
+    if (beginning->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
+    return add_source({path, path, format, {}}, text_of(*beginning), placement);
+}
+
+Status Loader::add_source(const Source& source, std::string_view beginning,
+                          const Placement& placement) {
+    if (!std::ranges::binary_search(assimp_extensions(), source.format)) {
+        return unknown_format(source.name, source.format);
+    }
+    if (source.format == "ply") {
+        if (const std::optional<std::string> problem = ply_problem(beginning)) {
+            return bad_input(fmt::format("{}: {}", source.name, *problem));
+        }
+    }
+    const Result<Soup> soup = read_soup(source, options_);
+    if (!soup) return soup.error();
+    return builder_.append(*soup, placement);
+}
+
+Status Loader::add_scene(std::string_view text, const std::string& name,
+                         const std::filesystem::path& folder) {
+    Result<SceneDescription> scene = parse_scene_description(text, name);
+    if (!scene) return scene.error();
+    for (const ModelEntry& model : scene->models) {
+        const std::string path = (folder / model.path).string();
+        Placement placement = placement_of(path);
+        placement.name = model.name;
+        placement.transform = model.transform;
+        placement.material = model.material;
+        Status added = add_file(path, extension_of(path), std::move(placement));
+        if (!added) return added;
+    }
+    lights_.insert(lights_.end(), scene->lights.begin(), scene->lights.end());
+    if (scene->camera && camera_) {
+        return bad_input(
+            fmt::format("{}: camera: another scene file has one already; keep one", name));
+    }
+    if (scene->camera) camera_ = scene->camera;
+    return success();
+}
+
+Result<Scene> Loader::finish(const std::string& name) {
+    Scene scene = builder_.take();
+    scene.lights = std::move(lights_);
+    scene.camera = camera_;
+    finish_scene(scene);
+    if (scene.bounds.lo == scene.bounds.hi) {
+        const glm::dvec3& p = scene.bounds.lo;
+        return bad_input(
+            fmt::format("{}: a scene of one point: every corner is at ({:g}, {:g}, {:g}); "
+                        "use a model that has a size",
+                        name, p.x, p.y, p.z));
+    }
+    return scene;
+}
+
+/// Runs `load` and turns what it throws into an error: nothing leaves the library but values.
+template <class Load>
+Result<Scene> guarded(const std::string& name, const Load& load) {
+    try {
+        return load();
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorKind::io,
+                     fmt::format("{}: not enough memory; free some or use a smaller model", name)};
+    } catch (const std::exception& exception) {
+        return Error{ErrorKind::io, fmt::format("{}: {}; try again or report it", name,
+                                                one_line(exception.what()))};
+    }
+}
+
+}  // namespace
+}  // namespace load
+
+Result<Scene> load_scene(std::span<const std::string> paths, const LoadOptions& options) {
+    if (paths.empty())
+        return Error{ErrorKind::bad_option, "no model given; name at least one file"};
+    return load::guarded(paths[0], [&]() -> Result<Scene> {
+        load::Loader loader(options);
+        for (const std::string& path : paths) {
+            if (Status added = loader.add_path(path); !added) return added.error();
+        }
+        return loader.finish(paths[0]);
+    });
+}
+
+Result<Scene> load_scene_from_memory(std::span<const std::byte> bytes, const std::string& name,
+                                     const LoadOptions& options) {
+    return load::guarded(name, [&]() -> Result<Scene> {
+        load::Loader loader(options);
+        if (Status added = loader.add_bytes(bytes, name, options.format); !added) {
+            return added.error();
+        }
+        return loader.finish(name);
+    });
+}
+
+std::vector<std::string> loadable_extensions() {
+    std::vector<std::string> extensions = load::assimp_extensions();
+    extensions.insert(std::ranges::upper_bound(extensions, "json"), "json");
+    return extensions;
+}
+
+}  // namespace sightline

@@ -1,0 +1,55 @@
+// The polygon soup: what a file holds, before anything is joined, triangulated or believed.
+//
+// The process that parses a foreign file hands this over as bytes. Those bytes are not trusted:
+// deserialising checks everything that memory safety rests on, building a scene the rest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sightline/scene.hpp"
+
+namespace sightline::load {
+
+/// Polygons over the file's vertices. Indices of vertices are as the file says: maybe out of range.
+struct SoupMesh {
+    std::string name;
+    std::uint32_t material = kNone;  ///< index into Soup::materials, or kNone
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;            ///< one a position, or empty
+    std::vector<glm::vec4> colors;             ///< one a position, or empty
+    std::vector<std::uint32_t> polygon_sizes;  ///< number of corners of each polygon, >= 3
+    std::vector<std::uint32_t> corners;        ///< the polygons' vertices, one after another
+};
+
+/// A mesh at a node.
+struct SoupObject {
+    std::string name;
+    std::uint32_t mesh = 0;     ///< index into Soup::meshes
+    glm::dmat4 transform{1.0};  ///< of the mesh into the world; affine
+};
+
+struct Soup {
+    bool srgb_colors = true;  ///< colours of materials and vertices are sRGB, not linear light
+    std::vector<Material> materials;
+    std::vector<SoupMesh> meshes;
+    std::vector<SoupObject> objects;       ///< in the file's order, depth first
+    std::uint64_t ignored_primitives = 0;  ///< points and lines
+};
+
+/// Bytes for the same program on the same machine.
+[[nodiscard]] std::vector<std::byte> serialise(const Soup& soup);
+
+/// The reverse; nothing when the bytes are no soup. Whatever the bytes, it neither reads outside
+/// them nor allocates more than a small multiple of their number, and the result keeps every
+/// statement made on the types above.
+[[nodiscard]] std::optional<Soup> deserialise(std::span<const std::byte> bytes);
+
+}  // namespace sightline::load

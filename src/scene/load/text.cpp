@@ -1,0 +1,64 @@
+#include "scene/load/text.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace sightline::load {
+namespace {
+
+constexpr std::size_t kLongestMessage = 200;
+
+/// Length of the well-formed UTF-8 character (RFC 3629) that the text begins with, or 0.
+std::size_t character_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned lead = byte(0);
+    if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
+    const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+    if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    }
+    // Over-long forms, surrogates, and what lies beyond U+10FFFF.
+    const unsigned second = byte(1);
+    const bool wrong = (lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
+                       (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f);
+    return wrong ? 0 : length;
+}
+
+}  // namespace
+
+std::string clean_text(std::string_view text) {
+    std::string clean;
+    clean.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        if (length == 0) {
+            clean += '?';
+        } else {
+            clean += text.substr(0, length);
+        }
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return clean;
+}
+
+std::string extension_of(std::string_view path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    extension.erase(0, 1);
+    for (char& c : extension) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return extension;
+}
+
+std::string stem_of(std::string_view path) { return std::filesystem::path(path).stem().string(); }
+
+std::string one_line(std::string_view message) {
+    message = message.substr(0, message.find_first_of("\r\n"));
+    while (!message.empty() && (message.back() == ' ' || message.back() == '.')) {
+        message.remove_suffix(1);
+    }
+    return clean_text(message.substr(0, kLongestMessage));
+}
+
+}  // namespace sightline::load

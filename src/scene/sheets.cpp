@@ -1,0 +1,330 @@
+// Sheets: faces that are coplanar in the world, up to the rounding of the file's coordinates.
+//
+// Snapped to a screen one by one, a wall and the decal on it are no longer coplanar and fight; so
+// the clusters are found here, in the world, once, and share a plane in every view.
+//
+// Method. A plane is a point (normal, offset) of a four-dimensional grid of cells; a face asks the
+// cells that its own uncertainty reaches (most often one) for partners. Faces with a partner are
+// then taken from the largest down: each that is still free becomes a seed and takes every free
+// face whose corners lie within `tolerance` of its plane. Membership refers to the seed and is not
+// handed on from member to member, so a finely tessellated sphere does not grow into one sheet; and
+// since the seeds come in an order that only geometry decides, the order of input does not matter.
+#include "scene/sheets.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <span>
+#include <tuple>
+
+namespace sightline {
+
+namespace {
+
+// Coordinates in files are floats or decimals of about six digits.
+constexpr double kToleranceOfSize = 0x1p-20;        // of the scene's radius
+constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
+// How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
+// size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
+constexpr double kNormalTolerance = 0x1p-12;
+constexpr double kCell = 0x1p-9;  // 8 tolerances, so that a face rarely reaches two cells
+constexpr std::int64_t kCellBias = 1024;
+constexpr int kCellBits = 12;
+
+struct FacePlane {
+    glm::dvec3 normal;  // unit
+    double offset;      // of the plane from the scene's centre, along the normal
+    double area2;       // doubled area
+};
+
+struct Entry {
+    std::uint64_t cell;
+    std::uint32_t triangle;
+    friend bool operator<(const Entry& a, const Entry& b) {
+        return std::tie(a.cell, a.triangle) < std::tie(b.cell, b.triangle);
+    }
+};
+
+template <class Body>
+void parallel_faces(std::size_t n, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            body(static_cast<std::uint32_t>(i));
+    });
+}
+
+class SheetBuilder {
+public:
+    explicit SheetBuilder(Scene& scene) : scene_(scene) {
+        centre_ = scene.bounds.centre();
+        radius_ = 0.5 * glm::length(scene.bounds.extent());
+        double largest = 0;
+        for (int k = 0; k < 3; ++k)
+            largest =
+                std::max({largest, std::abs(scene.bounds.lo[k]), std::abs(scene.bounds.hi[k])});
+        tolerance_ = std::max(kToleranceOfSize * radius_, kToleranceOfCoordinate * largest);
+    }
+
+    void run() {
+        scene_.sheets = {};
+        if (scene_.bounds.empty() || !(radius_ > 0)) return;
+        find_planes();
+        fill_cells();
+        grow_sheets(find_candidates());
+        finish();
+    }
+
+private:
+    // -- planes and cells ---------------------------------------------------------------------
+
+    [[nodiscard]] const glm::dvec3& corner(std::uint32_t t, int k) const {
+        return scene_.positions[scene_.triangles[t][k]];
+    }
+
+    [[nodiscard]] bool is_usable(std::uint32_t t) const { return planes_[t].area2 > 0; }
+
+    void find_planes() {
+        planes_.resize(scene_.triangles.size());
+        parallel_faces(planes_.size(), [&](std::uint32_t t) {
+            const glm::dvec3 p = corner(t, 0);
+            const glm::dvec3 n = glm::cross(corner(t, 1) - p, corner(t, 2) - p);
+            const double length = glm::length(n);
+            const bool dropped = !scene_.degenerate.empty() && scene_.degenerate[t] != 0;
+            if (dropped || !(length > 0) || !std::isfinite(length)) {
+                planes_[t] = {{0, 0, 0}, 0, 0};
+                return;
+            }
+            const glm::dvec3 unit = n / length;
+            planes_[t] = {unit, glm::dot(unit, p - centre_), length};
+        });
+    }
+
+    // The four coordinates of a plane, all of about the size of 1. A plane and its reverse are one.
+    [[nodiscard]] std::array<double, 4> coordinates(const FacePlane& plane, double sign) const {
+        return {sign * plane.normal.x, sign * plane.normal.y, sign * plane.normal.z,
+                sign * plane.offset / radius_};
+    }
+
+    // Where the sign of the normal is fixed; no axis or diagonal of a model lies across it.
+    [[nodiscard]] static double heading(const FacePlane& plane) {
+        return glm::dot(plane.normal, glm::dvec3{0.3717, 0.5423, 0.7535});
+    }
+
+    [[nodiscard]] static std::uint64_t pack(const std::array<std::int64_t, 4>& cell) {
+        std::uint64_t key = 0;
+        for (const std::int64_t c : cell)
+            key = key << kCellBits | static_cast<std::uint64_t>(c + kCellBias);
+        return key;
+    }
+
+    [[nodiscard]] static std::int64_t cell_of(double coordinate) {
+        return static_cast<std::int64_t>(std::floor(coordinate / kCell));
+    }
+
+    void fill_cells() {
+        entries_.resize(planes_.size());
+        parallel_faces(planes_.size(), [&](std::uint32_t t) {
+            const FacePlane& plane = planes_[t];
+            const auto at = coordinates(plane, heading(plane) < 0 ? -1.0 : 1.0);
+            std::array<std::int64_t, 4> cell{};
+            std::transform(at.begin(), at.end(), cell.begin(), cell_of);
+            entries_[t] = {is_usable(t) ? pack(cell) : ~std::uint64_t{0}, t};
+        });
+        tbb::parallel_sort(entries_.begin(), entries_.end());
+        index_cells();
+    }
+
+    // An open-addressed table from a cell to its first entry.
+    void index_cells() {
+        std::size_t size = 16;
+        while (size < 2 * entries_.size()) size *= 2;
+        table_.assign(size, kNone);
+        for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+            if (i > 0 && entries_[i].cell == entries_[i - 1].cell) continue;
+            std::size_t slot = slot_of(entries_[i].cell);
+            while (table_[slot] != kNone) slot = (slot + 1) & (size - 1);
+            table_[slot] = i;
+        }
+    }
+
+    [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
+        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (table_.size() - 1);
+    }
+
+    // Calls visit(triangle) for all in a cell until it answers true; returns whether it did.
+    template <class Visit>
+    bool any_in_cell(std::uint64_t cell, const Visit& visit) const {
+        for (std::size_t slot = slot_of(cell); table_[slot] != kNone;
+             slot = (slot + 1) & (table_.size() - 1)) {
+            std::uint32_t i = table_[slot];
+            if (entries_[i].cell != cell) continue;
+            for (; i < entries_.size() && entries_[i].cell == cell; ++i)
+                if (visit(entries_[i].triangle)) return true;
+            return false;
+        }
+        return false;
+    }
+
+    template <class Visit>
+    bool any_around(const std::array<double, 4>& at, const Visit& visit) const {
+        std::array<std::array<std::int64_t, 2>, 4> sides;
+        for (std::size_t k = 0; k < 4; ++k)
+            sides[k] = {cell_of(at[k] - kNormalTolerance), cell_of(at[k] + kNormalTolerance)};
+        for (std::size_t choice = 0; choice < 16; ++choice) {
+            std::array<std::int64_t, 4> cell{};
+            bool repeated = false;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t which = choice >> k & 1;
+                repeated = repeated || (which == 1 && sides[k][0] == sides[k][1]);
+                cell[k] = sides[k][which];
+            }
+            if (!repeated && any_in_cell(pack(cell), visit)) return true;
+        }
+        return false;
+    }
+
+    // Calls visit for the faces whose planes may be that of `t`, itself among them.
+    template <class Visit>
+    bool any_near(std::uint32_t t, const Visit& visit) const {
+        const double h = heading(planes_[t]);
+        if (h >= -2 * kNormalTolerance && any_around(coordinates(planes_[t], 1), visit))
+            return true;
+        return h <= 2 * kNormalTolerance && any_around(coordinates(planes_[t], -1), visit);
+    }
+
+    // -- clusters -----------------------------------------------------------------------------
+
+    [[nodiscard]] bool lies_in(std::uint32_t t, std::uint32_t seed) const {
+        const FacePlane& plane = planes_[seed];
+        const double cosine = glm::dot(plane.normal, planes_[t].normal);
+        if (1 - std::abs(cosine) > 0.5 * kNormalTolerance * kNormalTolerance) return false;
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(glm::dot(plane.normal, corner(t, k) - centre_) - plane.offset) >
+                tolerance_)
+                return false;
+        return true;
+    }
+
+    // Faces that have a partner at all, from the largest to the smallest.
+    [[nodiscard]] std::vector<std::uint32_t> find_candidates() {
+        std::vector<std::uint8_t> has_partner(planes_.size(), 0);
+        parallel_faces(planes_.size(), [&](std::uint32_t t) {
+            has_partner[t] = is_usable(t) && any_near(t, [&](std::uint32_t other) {
+                                 return other != t && (lies_in(other, t) || lies_in(t, other));
+                             });
+        });
+        std::vector<std::uint32_t> candidates;
+        for (std::uint32_t t = 0; t < has_partner.size(); ++t)
+            if (has_partner[t] != 0) candidates.push_back(t);
+        tbb::parallel_sort(candidates.begin(), candidates.end(),
+                           [&](std::uint32_t a, std::uint32_t b) { return comes_before(a, b); });
+        return candidates;
+    }
+
+    // By area, then by place; the number decides only between copies of one face.
+    [[nodiscard]] bool comes_before(std::uint32_t a, std::uint32_t b) const {
+        if (planes_[a].area2 != planes_[b].area2) return planes_[a].area2 > planes_[b].area2;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 &p = corner(a, k), &q = corner(b, k);
+            const auto pt = std::tie(p.x, p.y, p.z), qt = std::tie(q.x, q.y, q.z);
+            if (pt != qt) return pt < qt;
+        }
+        return a < b;
+    }
+
+    void grow_sheets(const std::vector<std::uint32_t>& candidates) {
+        if (candidates.empty()) return;
+        auto& of_triangle = scene_.sheets.of_triangle;
+        of_triangle.assign(scene_.triangles.size(), kNone);
+        std::vector<std::uint32_t> members;
+        for (const std::uint32_t seed : candidates) {
+            if (of_triangle[seed] != kNone) continue;
+            members.clear();
+            any_near(seed, [&](std::uint32_t t) {
+                if (of_triangle[t] == kNone && lies_in(t, seed)) members.push_back(t);
+                return false;
+            });
+            std::sort(members.begin(), members.end());
+            members.erase(std::unique(members.begin(), members.end()), members.end());
+            if (members.size() < 2) continue;
+            for (const std::uint32_t t : members) of_triangle[t] = sheet_count_;
+            scene_.sheets.first.push_back(static_cast<std::uint32_t>(scene_.sheets.members.size()));
+            scene_.sheets.members.insert(scene_.sheets.members.end(), members.begin(),
+                                         members.end());
+            ++sheet_count_;
+        }
+    }
+
+    // -- frames and balls -----------------------------------------------------------------------
+
+    // The corner of a sheet with the greatest measure; among equals the lexicographically smallest.
+    template <class Measure>
+    [[nodiscard]] std::uint32_t farthest(std::span<const std::uint32_t> members,
+                                         const Measure& measure) const {
+        std::uint32_t best = scene_.triangles[members[0]].x;
+        double best_measure = measure(scene_.positions[best]);
+        for (const std::uint32_t t : members) {
+            for (int k = 0; k < 3; ++k) {
+                const glm::dvec3 &p = corner(t, k), &b = scene_.positions[best];
+                const double m = measure(p);
+                if (m > best_measure ||
+                    (m == best_measure && std::tie(p.x, p.y, p.z) < std::tie(b.x, b.y, b.z))) {
+                    best = scene_.triangles[t][k];
+                    best_measure = m;
+                }
+            }
+        }
+        return best;
+    }
+
+    void frame_sheet(std::size_t s) {
+        Sheets& sheets = scene_.sheets;
+        const std::span<const std::uint32_t> members(sheets.members.data() + sheets.first[s],
+                                                     sheets.first[s + 1] - sheets.first[s]);
+        const auto at = [&](std::uint32_t i) { return scene_.positions[i]; };
+        const auto squared = [](const glm::dvec3& v) { return glm::dot(v, v); };
+        const glm::dvec3 start = at(farthest(members, [](const glm::dvec3&) { return 0.0; }));
+        const auto p = farthest(members, [&](const glm::dvec3& v) { return squared(v - start); });
+        const auto q = farthest(members, [&](const glm::dvec3& v) { return squared(v - at(p)); });
+        const glm::dvec3 along = at(q) - at(p);
+        const auto r = farthest(
+            members, [&](const glm::dvec3& v) { return squared(glm::cross(along, v - at(p))); });
+        sheets.frame[s] = Corners(p, q, r);
+        const glm::dvec3 middle = 0.5 * (at(p) + at(q));
+        const auto rim =
+            farthest(members, [&](const glm::dvec3& v) { return squared(v - middle); });
+        sheets.ball[s] = glm::dvec4(middle, glm::length(at(rim) - middle));
+    }
+
+    void finish() {
+        Sheets& sheets = scene_.sheets;
+        if (sheet_count_ == 0) {
+            sheets = {};
+            return;
+        }
+        sheets.first.push_back(static_cast<std::uint32_t>(sheets.members.size()));
+        sheets.frame.resize(sheet_count_);
+        sheets.ball.resize(sheet_count_);
+        tbb::parallel_for(std::size_t{0}, std::size_t{sheet_count_},
+                          [&](std::size_t s) { frame_sheet(s); });
+    }
+
+    Scene& scene_;
+    glm::dvec3 centre_{};
+    double radius_ = 0, tolerance_ = 0;
+    std::vector<FacePlane> planes_;
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> table_;
+    std::uint32_t sheet_count_ = 0;
+};
+
+}  // namespace
+
+void build_sheets(Scene& scene) { SheetBuilder(scene).run(); }
+
+}  // namespace sightline
