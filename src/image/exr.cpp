@@ -1,0 +1,216 @@
+// OpenEXR files: F. Kainz, R. Bogart, D. Hess, "The OpenEXR image file format", 2004.
+//
+// One scan-line part. Colour is half, whatever is measured (Z, N) float, ids are uint. The header
+// holds what the format demands and nothing that differs from run to run.
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <fmt/core.h>
+#include <half.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "image/atomic_file.hpp"
+#include "image/exr_writer.hpp"
+#include "sightline/image.hpp"
+
+namespace sightline {
+namespace {
+
+/// zlib's: measured on 1080p pictures, higher levels take longer for little.
+constexpr int kCompressionLevel = 1;
+
+/// OpenEXR's view of an AtomicFile, whose first error sticks.
+class FileStream final : public Imf::OStream {
+public:
+    explicit FileStream(AtomicFile file) : OStream(file.path().c_str()), file_(std::move(file)) {}
+    void write(const char c[], int n) override {
+        demand(file_.write(c, static_cast<std::size_t>(n)));
+    }
+    std::uint64_t tellp() override { return file_.position(); }
+    void seekp(std::uint64_t position) override { demand(file_.seek(position)); }
+    [[nodiscard]] AtomicFile& file() { return file_; }
+
+private:
+    /// OpenEXR wants an exception; it is caught at the border of this file.
+    static void demand(const Status& status) {
+        if (!status) throw std::runtime_error(status.error().message);
+    }
+    AtomicFile file_;
+};
+
+Imf::Header header_of(std::uint32_t width, std::uint32_t height, const ExrChannels& channels) {
+    Imf::Header header(static_cast<int>(width), static_cast<int>(height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = kCompressionLevel;
+    const auto insert = [&header](const char* name, Imf::PixelType type) {
+        header.channels().insert(name, Imf::Channel(type));
+    };
+    if (channels.color) {
+        for (const char* name : {"R", "G", "B", "A"}) insert(name, Imf::HALF);
+    }
+    if (channels.depth) insert("Z", Imf::FLOAT);
+    if (channels.normals) {
+        for (const char* name : {"N.X", "N.Y", "N.Z"}) insert(name, Imf::FLOAT);
+    }
+    if (channels.objects) insert("object", Imf::UINT);
+    if (channels.triangles) insert("triangle", Imf::UINT);
+    return header;
+}
+
+Error exr_error(const std::string& path, std::string_view cause) {
+    return {ErrorKind::bad_option,
+            fmt::format("cannot write '{}': {}; choose another size or format", path, cause)};
+}
+
+}  // namespace
+
+struct ExrWriter::State {
+    State(AtomicFile target, std::uint32_t w, std::uint32_t h, const ExrChannels& channels)
+        : stream(std::move(target)), width(w) {
+        // No threads of OpenEXR's own: they would outlive the call, and a fork.
+        output.emplace(stream, header_of(w, h, channels), 0);
+    }
+
+    /// The file's error when it has one, else OpenEXR's.
+    [[nodiscard]] Error error(std::string_view cause) {
+        if (const Status status = stream.file().status(); !status) return status.error();
+        return exr_error(stream.file().path(), cause);
+    }
+
+    /// A slice of `components` interleaved numbers of type T, the first one at `rows`, which is
+    /// the start of row next_row.
+    template <class T>
+    Imf::Slice slice(Imf::PixelType type, const T* rows, std::size_t components) const {
+        const std::size_t step = sizeof(T) * components, stride = step * width;
+        // OpenEXR wants the address that row 0 would have; it never reads there.
+        const std::uintptr_t origin = reinterpret_cast<std::uintptr_t>(rows) - stride * next_row;
+        return {type, reinterpret_cast<char*>(origin), step, stride};
+    }
+
+    void write(const ExrRows& rows, std::uint32_t count) {
+        Imf::FrameBuffer frame;
+        if (rows.color != nullptr) insert_color(frame, rows.color, count);
+        if (rows.depth != nullptr) frame.insert("Z", slice(Imf::FLOAT, rows.depth, 1));
+        if (rows.normals != nullptr) {
+            const float* first = &rows.normals->x;
+            constexpr std::array<const char*, 3> kNames = {"N.X", "N.Y", "N.Z"};
+            for (std::size_t k = 0; k < 3; ++k) {
+                frame.insert(kNames[k], slice(Imf::FLOAT, first + k, 3));
+            }
+        }
+        if (rows.objects != nullptr) frame.insert("object", slice(Imf::UINT, rows.objects, 1));
+        if (rows.triangles != nullptr) {
+            frame.insert("triangle", slice(Imf::UINT, rows.triangles, 1));
+        }
+        output->setFrameBuffer(frame);
+        output->writePixels(static_cast<int>(count));
+        next_row += count;
+    }
+
+    void insert_color(Imf::FrameBuffer& frame, const glm::vec4* color, std::uint32_t count) {
+        halves.resize(std::size_t{count} * width * 4);
+        const float* from = &color->x;
+        std::transform(from, from + halves.size(), halves.begin(), [](float v) { return half(v); });
+        constexpr std::array<const char*, 4> kNames = {"R", "G", "B", "A"};
+        for (std::size_t k = 0; k < 4; ++k) {
+            frame.insert(kNames[k], slice(Imf::HALF, halves.data() + k, 4));
+        }
+    }
+
+    FileStream stream;  // before output, which writes its last bytes when it goes
+    std::optional<Imf::OutputFile> output;
+    std::uint32_t width = 0;
+    std::size_t next_row = 0;
+    std::vector<half> halves;
+};
+
+ExrWriter::ExrWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
+ExrWriter& ExrWriter::operator=(ExrWriter&&) noexcept = default;
+ExrWriter::~ExrWriter() = default;
+
+Result<ExrWriter> ExrWriter::create(const std::string& path, std::uint32_t width,
+                                    std::uint32_t height, ExrChannels channels) {
+    Result<AtomicFile> file = AtomicFile::create(path, AtomicFile::Access::seekable);
+    if (!file) return file.error();
+    if (width == 0 || height == 0) return exr_error(path, "the picture has no pixels");
+    try {
+        return ExrWriter(std::make_unique<State>(std::move(*file), width, height, channels));
+    } catch (const std::exception& e) {
+        return exr_error(path, e.what());
+    }
+}
+
+Status ExrWriter::write_rows(const ExrRows& rows, std::uint32_t count) {
+    try {
+        state_->write(rows, count);
+        return success();
+    } catch (const std::exception& e) {
+        return state_->error(e.what());
+    }
+}
+
+Status ExrWriter::finish() {
+    state_->output.reset();  // writes the table of rows; a failure sticks to the file
+    return state_->stream.file().commit();
+}
+
+namespace {
+
+/// Sizes of the layers that are there; nothing when they differ or there is none.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> common_size(const ExrLayers& layers) {
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+    bool equal = true;
+    const auto look = [&](const auto* image) {
+        if (image == nullptr) return;
+        const std::pair own(image->width, image->height);
+        equal = equal && (!size || *size == own);
+        size = own;
+    };
+    look(layers.color);
+    look(layers.depth);
+    look(layers.normals);
+    look(layers.objects);
+    look(layers.triangles);
+    if (!equal) return std::nullopt;
+    return size;
+}
+
+template <class T>
+const T* row_of(const Image<T>* image, std::uint32_t y) {
+    return image == nullptr ? nullptr : image->row(y).data();
+}
+
+}  // namespace
+
+Status write_exr(const std::string& path, const ExrLayers& layers) {
+    const auto size = common_size(layers);
+    if (!size) return exr_error(path, "its layers are missing or differ in size");
+    const auto [width, height] = *size;
+    Result<ExrWriter> writer = ExrWriter::create(
+        path, width, height,
+        {layers.color != nullptr, layers.depth != nullptr, layers.normals != nullptr,
+         layers.objects != nullptr, layers.triangles != nullptr});
+    if (!writer) return writer.error();
+    constexpr std::uint32_t kBlockRows = 64;  // a multiple of the 16 rows of a compressed block
+    for (std::uint32_t y = 0; y < height; y += kBlockRows) {
+        const ExrRows rows{row_of(layers.color, y), row_of(layers.depth, y),
+                           row_of(layers.normals, y), row_of(layers.objects, y),
+                           row_of(layers.triangles, y)};
+        const Status written = writer->write_rows(rows, std::min(kBlockRows, height - y));
+        if (!written) return written;
+    }
+    return writer->finish();
+}
+
+}  // namespace sightline
