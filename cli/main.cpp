@@ -1,0 +1,89 @@
+// The program `sightline`: finds the command in the table, runs it, and turns errors into one line
+// on standard error and an exit status (0 done, 1 the job failed, 2 wrong use).
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "errors.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "suggest.hpp"
+
+namespace sightline::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::vector<std::string_view> command_names() {
+    std::vector<std::string_view> names;
+    for (const Command* command : commands()) names.push_back(command->name);
+    return names;
+}
+
+Result<int> show(const std::string& text) {
+    if (Status printed = print(text); !printed) return printed.error();
+    return 0;
+}
+
+bool wants_help(const Words& words) {
+    for (const std::string& word : words) {
+        if (word == "--") return false;
+        if (word == "--help" || word == "-h") return true;
+    }
+    return false;
+}
+
+Result<int> run_command(const std::string& name, const Words& words) {
+    const Command* command = find_command(name);
+    if (command == nullptr) {
+        return wrong_use("unknown command '{}'; {}", name,
+                         did_you_mean(name, command_names(), "'sightline --help' lists them"));
+    }
+    if (wants_help(words)) return show(command_help(*command));
+    const Result<Arguments> arguments = parse_arguments(*command, words);
+    if (!arguments) return arguments.error();
+    return command->run(*arguments);
+}
+
+Result<int> run_program(const Words& words) {
+    if (words.empty()) return wrong_use("no command given; 'sightline --help' lists them");
+    const std::string& first = words.front();
+    if (first == "--help" || first == "-h") return show(program_help());
+    if (first == "help") {  // what many type first
+        return words.size() == 1 ? show(program_help()) : run_command(words[1], {"--help"});
+    }
+    if (first == "--version") return show("sightline " SIGHTLINE_VERSION "\n");
+    if (first.starts_with('-')) {
+        return wrong_use("the command comes first, but '{}' stands there; one of {}", first,
+                         join(command_names()));
+    }
+    return run_command(first, {words.begin() + 1, words.end()});
+}
+
+int report(const Error& error) {
+    fmt::print(stderr, "sightline: {}\n", error.message);
+    return exit_status(error.kind);
+}
+
+}  // namespace
+}  // namespace sightline::cli
+
+int main(int argc, char** argv) {
+    using namespace sightline;
+    cli::install_signal_handlers();
+    try {
+        const Result<int> result = cli::run_program({argv + 1, argv + argc});
+        return result ? *result : cli::report(result.error());
+    } catch (const std::bad_alloc&) {
+        return cli::report(cli::failure(
+            "not enough memory; choose a smaller --resolution or --samples, or a smaller model"));
+    } catch (const std::exception& error) {
+        return cli::report(cli::failure("unexpected failure: {}", error.what()));
+    }
+}

@@ -1,0 +1,74 @@
+// --opacity: a material's name changes the material, an object's name gives the object a material
+// of its own, so that others that share it stay as they are.
+#include "materials.hpp"
+
+#include <algorithm>
+
+#include "errors.hpp"
+#include "suggest.hpp"
+
+namespace sightline::cli {
+namespace {
+
+Error unknown_name(const Scene& scene, const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Material& material : scene.materials) names.push_back(material.name);
+    for (const Object& object : scene.objects) names.push_back(object.name);
+    return wrong_use("--opacity: nothing is called '{}'; {}", name,
+                     did_you_mean(name, names, "'sightline info' lists materials and objects"));
+}
+
+bool apply_to_name(Scene& scene, const OpacityRule& rule) {
+    bool found = false;
+    for (Material& material : scene.materials) {
+        if (material.name != rule.name) continue;
+        material.opacity = rule.opacity;
+        found = true;
+    }
+    for (Object& object : scene.objects) {
+        if (object.name != rule.name) continue;
+        Material own = scene.materials[object.material];
+        own.opacity = rule.opacity;
+        object.material = static_cast<std::uint32_t>(scene.materials.size());
+        scene.materials.push_back(std::move(own));
+        found = true;
+    }
+    return found;
+}
+
+}  // namespace
+
+std::vector<OpacityRule> read_opacity(OptionReader& reader) {
+    std::vector<OpacityRule> rules;
+    for (const std::string& text : reader.arguments().values("--opacity")) {
+        // A name may hold '='; the number can't.
+        const std::size_t sign = text.rfind('=');
+        const bool named = sign != std::string::npos;
+        const auto opacity = parse_number(named ? std::string_view(text).substr(sign + 1) : text);
+        if (!opacity || *opacity < 0 || *opacity > 1 || sign == 0) {
+            reader.fail(wrong_use("--opacity: '{}' is not a number from 0 to 1, or NAME=F", text));
+            continue;
+        }
+        rules.push_back({named ? text.substr(0, sign) : "", static_cast<float>(*opacity)});
+    }
+    return rules;
+}
+
+Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules) {
+    for (const OpacityRule& rule : rules) {
+        if (rule.name.empty()) {
+            for (Material& material : scene.materials) material.opacity = rule.opacity;
+        } else if (!apply_to_name(scene, rule)) {
+            return unknown_name(scene, rule.name);
+        }
+    }
+    return success();
+}
+
+bool has_translucent_faces(const Scene& scene) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+        return object.triangle_count > 0 && scene.materials[object.material].opacity < 1;
+    });
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,26 @@
+// Changing how a loaded scene looks: --opacity.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "options.hpp"
+#include "sightline/scene.hpp"
+
+namespace sightline::cli {
+
+/// One --opacity: of a material or an object, or of everything when the name is empty.
+struct OpacityRule {
+    std::string name;
+    float opacity = 1;
+};
+
+[[nodiscard]] std::vector<OpacityRule> read_opacity(OptionReader& reader);
+
+/// Applies rules in order. Error (bad_option): a name that no material and no object has.
+[[nodiscard]] Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules);
+
+/// Whether a face that is drawn lets something shine through.
+[[nodiscard]] bool has_translucent_faces(const Scene& scene);
+
+}  // namespace sightline::cli

@@ -1,0 +1,198 @@
+// Output files. A single file is left to the library, which writes it under a temporary name and
+// renames it. Several files need a second step: each is written completely under a name of ours
+// before the first one is renamed, so that a disk that fills up leaves none of them.
+#include "outputs.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "errors.hpp"
+#include "signals.hpp"
+#include "suggest.hpp"
+
+namespace sightline::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view name_of(ImageFormat format) {
+    switch (format) {
+        case ImageFormat::png:
+            return "png";
+        case ImageFormat::exr:
+            return "exr";
+        case ImageFormat::npy:
+            return "npy";
+    }
+    return "";
+}
+
+std::string list_of(std::span<const ImageFormat> formats) {
+    std::vector<std::string_view> names;
+    for (const ImageFormat format : formats) names.push_back(name_of(format));
+    return join(names);
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// The file that a path names, links followed; one spelling for one file.
+fs::path identity(const std::string& path) {
+    std::error_code ignored;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+    return whole.empty() ? fs::path(path) : whole;
+}
+
+bool is_device(const std::string& path) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+std::optional<Error> check_place(const Output& output) {
+    if (output.path == "-") return std::nullopt;
+    std::error_code ignored;
+    const fs::path path(output.path), folder = folder_of(path);
+    if (fs::is_directory(path, ignored)) {
+        return failure("{}: '{}' is a folder; name a file in it", output.option, output.path);
+    }
+    if (!fs::is_directory(folder, ignored)) {
+        return failure("{}: the folder '{}' of '{}' does not exist; create it first", output.option,
+                       folder.string(), output.path);
+    }
+    const bool exists = fs::exists(path, ignored);
+    const bool writable = (exists && access(path.c_str(), W_OK) != 0)
+                              ? false
+                              : is_device(output.path) || access(folder.c_str(), W_OK | X_OK) == 0;
+    if (!writable) {
+        return failure("{}: no permission to write '{}'; choose another place", output.option,
+                       output.path);
+    }
+    return std::nullopt;
+}
+
+/// Gives a complete temporary file its name, and the permissions of a file that it replaces.
+Status rename_to_target(const TemporaryFile& file, const Output& output) {
+    std::error_code error;
+    const fs::path target = identity(output.path);
+    const fs::file_status old = fs::status(target, error);
+    if (fs::exists(old)) fs::permissions(file.path(), old.permissions(), error);
+    fs::rename(file.path(), target, error);
+    if (!error) return success();
+    return failure("cannot write '{}': {}; write elsewhere", output.path, error.message());
+}
+
+/// The message of the library with the name that the user gave.
+Error with_name(Error error, const std::string& staged, const std::string& wanted) {
+    for (std::size_t at; (at = error.message.find(staged)) != std::string::npos;) {
+        error.message.replace(at, staged.size(), wanted);
+    }
+    return error;
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(const fs::path& folder, std::string_view ending) {
+    static unsigned counter = 0;
+    path_ = (folder / fmt::format(".sightline-{}-{}.{}", getpid(), counter++, ending)).string();
+    ticket_ = remember_file(path_);
+}
+
+TemporaryFile::~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    forget_file(ticket_);
+}
+
+std::optional<Output> read_output(OptionReader& reader, std::string_view option,
+                                  std::span<const ImageFormat> allowed) {
+    const Arguments& arguments = reader.arguments();
+    const auto path = arguments.value(option);
+    if (!path) return std::nullopt;
+    const std::string_view shown = option == "--output" ? "-o" : option;
+    const auto wanted = arguments.value("--output-format");
+    std::optional<ImageFormat> format;
+    if (path->empty()) {
+        reader.fail(wrong_use("{}: the name of the file is empty", shown));
+        return std::nullopt;
+    }
+    if (wanted && (*path == "-" || option == "--output")) {
+        format = parse_image_format(*wanted);
+    } else if (*path == "-") {
+        reader.fail(wrong_use("{} - needs --output-format ({})", shown, list_of(allowed)));
+        return std::nullopt;
+    } else {
+        format = image_format_of(*path);
+    }
+    if (!format || std::find(allowed.begin(), allowed.end(), *format) == allowed.end()) {
+        const bool by_option = wanted && (*path == "-" || option == "--output");
+        reader.fail(by_option ? wrong_use("--output-format: '{}' can't be written by {}; choose {}",
+                                          *wanted, shown, list_of(allowed))
+                              : wrong_use("{}: '{}' has no extension that can be written here; "
+                                          "choose {}",
+                                          shown, *path, list_of(allowed)));
+        return std::nullopt;
+    }
+    return Output{std::string(shown), *path, *format};
+}
+
+void check_outputs(OptionReader& reader, std::span<const Output> outputs,
+                   std::span<const std::string> inputs) {
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const Output& output = outputs[i];
+        const bool to_stream = output.path == "-" || is_device(output.path);
+        for (std::size_t j = 0; j < i; ++j) {
+            if (output.path == "-" && outputs[j].path == "-") {
+                reader.fail(wrong_use("{} and {} can't both go to standard output; give one a file",
+                                      outputs[j].option, output.option));
+            } else if (!to_stream && outputs[j].path != "-" &&
+                       identity(output.path) == identity(outputs[j].path)) {
+                reader.fail(
+                    wrong_use("{} and {} name the same file '{}'; give them different names",
+                              outputs[j].option, output.option, output.path));
+            }
+        }
+        for (const std::string& input : inputs) {
+            if (to_stream || input == "-" || identity(input) != identity(output.path)) continue;
+            reader.fail(
+                wrong_use("{}: '{}' is an input, which would be overwritten; choose another "
+                          "name",
+                          output.option, output.path));
+        }
+        if (auto error = check_place(output)) reader.fail(std::move(*error));
+    }
+}
+
+Status OutputBatch::publish() {
+    // What can't be taken back (a stream) goes last.
+    const auto is_stream = [](const Job& job) {
+        return job.output.path == "-" || is_device(job.output.path);
+    };
+    std::stable_partition(jobs_.begin(), jobs_.end(),
+                          [&](const Job& job) { return !is_stream(job); });
+    if (jobs_.size() == 1) return jobs_.front().writer(jobs_.front().output.path);
+    std::vector<std::unique_ptr<TemporaryFile>> staged;
+    for (const Job& job : jobs_) {
+        if (is_stream(job)) {
+            if (Status done = job.writer(job.output.path); !done) return done;
+            continue;
+        }
+        const fs::path folder = folder_of(identity(job.output.path));
+        staged.push_back(std::make_unique<TemporaryFile>(folder, "staged"));
+        const std::string& path = staged.back()->path();
+        if (Status done = job.writer(path); !done) {
+            return with_name(done.error(), path, job.output.path);
+        }
+    }
+    for (std::size_t i = 0; i < staged.size(); ++i) {
+        if (Status done = rename_to_target(*staged[i], jobs_[i].output); !done) return done;
+    }
+    return success();
+}
+
+}  // namespace sightline::cli

@@ -1,0 +1,67 @@
+// The files a command writes: checked before any work, and all of them or none appear.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "options.hpp"
+#include "sightline/image.hpp"
+
+namespace sightline::cli {
+
+struct Output {
+    std::string option;  ///< "--depth", for messages
+    std::string path;    ///< "-" is standard output
+    ImageFormat format = ImageFormat::png;
+};
+
+/// An option that names an output; its format follows the extension, or --output-format for "-".
+std::optional<Output> read_output(OptionReader& reader, std::string_view option,
+                                  std::span<const ImageFormat> allowed);
+
+/// Two outputs in one place, an output that is an input, a missing folder, a folder without
+/// permission: reported before any work.
+void check_outputs(OptionReader& reader, std::span<const Output> outputs,
+                   std::span<const std::string> inputs);
+
+/// Writes one picture to a path.
+using Writer = std::function<Status(const std::string& path)>;
+
+/// A name for a file that must not stay: removed by the destructor and when the program is stopped.
+class TemporaryFile {
+public:
+    /// A name in the folder that nothing else uses; the file itself is made by whoever writes it.
+    TemporaryFile(const std::filesystem::path& folder, std::string_view ending);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+private:
+    std::string path_;
+    int ticket_ = -1;
+};
+
+/// Collects pictures and publishes them together: they are written beside their targets under
+/// temporary names, and renamed when every one of them is complete.
+class OutputBatch {
+public:
+    void add(const Output& output, Writer writer) { jobs_.push_back({output, std::move(writer)}); }
+    /// Writes all. After an error nothing of them is left.
+    [[nodiscard]] Status publish();
+
+private:
+    struct Job {
+        Output output;
+        Writer writer;
+    };
+    std::vector<Job> jobs_;
+};
+
+}  // namespace sightline::cli

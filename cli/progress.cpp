@@ -1,0 +1,45 @@
+// A line of progress: carriage return and "erase to the end of the line" (ECMA-48) rewrite it.
+#include "progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+
+namespace sightline::cli {
+namespace {
+
+constexpr std::string_view kEraseLine = "\r\x1b[K";
+std::atomic<bool> line_is_dirty{false};
+
+}  // namespace
+
+Progress::Progress(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::stage(std::string_view what) {
+    if (!shown_) return;
+    line_is_dirty = true;
+    fmt::print(stderr, "{}sightline: {} ...", kEraseLine, what);
+    std::fflush(stderr);
+}
+
+void Progress::stage(std::string_view what, unsigned done, unsigned all) {
+    if (shown_) stage(fmt::format("{} {}/{}", what, done, all));
+}
+
+void Progress::clear() {
+    if (!shown_ || !line_is_dirty.exchange(false)) return;
+    fmt::print(stderr, "{}", kEraseLine);
+    std::fflush(stderr);
+}
+
+void clear_progress_from_signal_handler() {
+    if (!line_is_dirty.load()) return;
+    const auto written = write(STDERR_FILENO, kEraseLine.data(), kEraseLine.size());
+    static_cast<void>(written);  // nothing more can be done
+}
+
+}  // namespace sightline::cli

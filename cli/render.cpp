@@ -1,0 +1,436 @@
+// `sightline render`: a picture of a model, with maps of depth, ids, normals and coverage.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "errors.hpp"
+#include "materials.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "sightline/sightline.hpp"
+#include "suggest.hpp"
+
+namespace sightline::cli {
+namespace {
+
+constexpr std::array kPictureFormats = {ImageFormat::png, ImageFormat::exr, ImageFormat::npy};
+constexpr std::array kMaskFormats = {ImageFormat::npy, ImageFormat::png};
+constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;  // what resolve() takes
+constexpr std::uint64_t kMaxPerAxis = 8;
+
+struct Layers {
+    bool normals = false, ids = false;  ///< of --aov
+};
+
+struct RenderOptions {
+    CommonOptions common;
+    Models models;
+    CameraOptions camera;
+    Resolution resolution;
+    const Algorithm* algorithm = nullptr;
+    Cull cull = Cull::automatic;
+    std::uint32_t per_axis = 1;
+    std::optional<Shading> shading;
+    double crease_angle = 30;
+    glm::u8vec4 background{255};
+    std::vector<OpacityRule> opacity;
+    Layers layers;
+    std::optional<Output> color, depth, ids, normals, mask;
+
+    /// Whether something is written that is resolved at the pixels' centres.
+    [[nodiscard]] bool needs_centres() const {
+        return depth || ids || normals || mask || (color && color->format == ImageFormat::exr);
+    }
+};
+
+/// Everything between a scene and its files.
+struct Frame {
+    ScreenScene screen;
+    Visibility samples, centre_store;
+    ColorImage color;
+    DepthImage depth;
+    IdImage triangles, objects;
+    NormalImage normals;
+    MaskImage mask;
+    std::vector<Counter> counters;
+
+    /// Visibility at the pixels' centres; with one sample a pixel it is that of the picture.
+    [[nodiscard]] const Visibility& centres() const {
+        return samples.grid.per_axis == 1 && !samples.ids.empty() ? samples : centre_store;
+    }
+};
+
+// -- options -----------------------------------------------------------------------------------
+
+void read_samples(OptionReader& reader, RenderOptions& options) {
+    const std::string expected = "a square grid of samples: 1, 4, 16 or 64";
+    const auto samples = reader.count("--samples", 1, kMaxPerAxis * kMaxPerAxis, expected);
+    if (!samples) return;
+    const auto n =
+        static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(*samples))));
+    if (n * n != *samples || !std::has_single_bit(n)) {
+        reader.fail(wrong_use("--samples: '{}' is not {}", *samples, expected));
+        return;
+    }
+    options.per_axis = n;
+    const SampleGrid grid{options.resolution, n};
+    if (std::uint64_t{options.resolution.width} * n * options.resolution.height * n > kMaxSamples) {
+        reader.fail(wrong_use("--samples: {} a pixel at {}x{} are over 2^28; choose fewer",
+                              *samples, grid.resolution.width, grid.resolution.height));
+    }
+}
+
+void read_shading(OptionReader& reader, RenderOptions& options) {
+    std::array<std::string_view, 7> names;
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = name_of(static_cast<Shading>(i));
+    if (const auto index = reader.choice("--shading", names)) {
+        options.shading = static_cast<Shading>(*index);
+    }
+    options.crease_angle =
+        reader.number("--crease-angle", {0, 180}, "an angle from 0 to 180 degrees")
+            .value_or(options.crease_angle);
+    options.background = reader.color("--background").value_or(options.background);
+    options.opacity = read_opacity(reader);
+}
+
+void read_layers(OptionReader& reader, RenderOptions& options) {
+    const auto text = reader.arguments().value("--aov");
+    if (!text) return;
+    for (const std::string_view name : split_list(*text)) {
+        if (name == "normals") {
+            options.layers.normals = true;
+        } else if (name == "ids") {
+            options.layers.ids = true;
+        } else {
+            reader.fail(wrong_use("--aov: '{}' is unknown; choose from normals, ids", name));
+        }
+    }
+    if (!options.color || options.color->format != ImageFormat::exr) {
+        reader.fail(wrong_use("--aov needs an EXR picture; write to a name like -o picture.exr"));
+    }
+}
+
+void read_outputs(OptionReader& reader, RenderOptions& options) {
+    options.color = read_output(reader, "--output", kPictureFormats);
+    options.depth = read_output(reader, "--depth", kPictureFormats);
+    options.ids = read_output(reader, "--ids", kPictureFormats);
+    options.normals = read_output(reader, "--normals", kPictureFormats);
+    options.mask = read_output(reader, "--mask", kMaskFormats);
+    std::vector<Output> outputs;
+    for (const auto* output :
+         {&options.color, &options.depth, &options.ids, &options.normals, &options.mask}) {
+        if (*output) outputs.push_back(**output);
+    }
+    if (outputs.empty()) {
+        reader.fail(
+            wrong_use("nothing to write; name a file, as in -o picture.png (or --depth, "
+                      "--ids, --normals, --mask)"));
+    }
+    check_outputs(reader, outputs, options.models.paths);
+    const bool to_stdout = std::any_of(outputs.begin(), outputs.end(),
+                                       [](const Output& output) { return output.path == "-"; });
+    if (to_stdout && options.common.json) {
+        reader.fail(
+            wrong_use("--json would mix with the picture on standard output; write the "
+                      "picture to a file"));
+    }
+    read_layers(reader, options);
+}
+
+Result<RenderOptions> read_options(const Arguments& arguments) {
+    OptionReader reader(arguments);
+    RenderOptions options;
+    options.models = read_models(reader);
+    options.camera = read_camera(reader);
+    options.resolution = read_resolution(reader, Resolution{});
+    const auto chosen = reader.algorithms("--algorithm");
+    if (chosen.size() > 1) reader.fail(wrong_use("--algorithm: give one; `compare` takes several"));
+    options.algorithm = chosen.empty() ? &default_algorithm() : chosen.front();
+    options.cull = read_cull(reader, Cull::automatic);
+    read_samples(reader, options);
+    read_shading(reader, options);
+    options.common = read_common(reader);
+    read_outputs(reader, options);
+    if (reader.error()) return *reader.error();
+    return options;
+}
+
+// -- the work ----------------------------------------------------------------------------------
+
+/// Where the file has normals they are interpolated, else faces are flat.
+Shading decide_shading(const RenderOptions& options, const Scene& scene) {
+    if (options.shading) return *options.shading;
+    const bool has_normals =
+        std::any_of(scene.objects.begin(), scene.objects.end(),
+                    [](const Object& object) { return object.has_file_normals; });
+    return has_normals ? Shading::phong : Shading::flat;
+}
+
+bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading == Shading::phong; }
+
+/// Linear light, premultiplied.
+glm::vec4 linear_color(glm::u8vec4 srgb) {
+    const float alpha = static_cast<float>(srgb.a) / 255.0f;
+    return {alpha * from_srgb8(srgb.r), alpha * from_srgb8(srgb.g), alpha * from_srgb8(srgb.b),
+            alpha};
+}
+
+Result<Scene> load(const RenderOptions& options) {
+    Result<Scene> scene = load_scene(options.models.paths, options.models.options);
+    if (!scene) return scene;
+    if (Status done = apply_opacity(*scene, options.opacity); !done) return done.error();
+    if (options.shading && is_smooth(*options.shading)) make_normals(*scene, options.crease_angle);
+    return scene;
+}
+
+Status resolve_samples(const RenderOptions& options, Frame& frame) {
+    ResolveOptions resolving{options.per_axis, options.common.threads, nullptr, &frame.counters};
+    if (options.color) {
+        if (Status done = resolve(*options.algorithm, frame.screen, resolving, frame.samples);
+            !done) {
+            return done;
+        }
+    }
+    if (!options.needs_centres() || (options.color && options.per_axis == 1)) return success();
+    resolving.samples_per_axis = 1;
+    // The counters of the picture are those to report.
+    if (options.color) resolving.counters = nullptr;
+    return resolve(*options.algorithm, frame.screen, resolving, frame.centre_store);
+}
+
+void shade_frame(const RenderOptions& options, Shading shading, Frame& frame) {
+    if (options.color) {
+        frame.color = shade(frame.screen, frame.samples,
+                            {shading, linear_color(options.background), options.common.threads});
+    }
+    if (!options.needs_centres()) return;
+    const Visibility& centres = frame.centres();
+    const bool is_exr = options.color && options.color->format == ImageFormat::exr;
+    if (options.depth || is_exr) frame.depth = depth_map(frame.screen, centres);
+    if (options.ids || options.layers.ids) {
+        frame.triangles = triangle_map(centres);
+        frame.objects = object_map(frame.screen, centres);
+    }
+    if (options.normals || options.layers.normals) {
+        frame.normals = normal_map(frame.screen, centres, is_smooth(shading));
+    }
+    if (options.mask) frame.mask = mask_map(centres);
+}
+
+// -- writing -----------------------------------------------------------------------------------
+
+Status write_color(const RenderOptions& options, const Frame& frame, const std::string& path) {
+    if (options.color->format == ImageFormat::png) return write_color_png(path, frame.color);
+    if (options.color->format == ImageFormat::npy) return write_npy(path, frame.color);
+    ExrLayers layers;
+    layers.color = &frame.color;
+    layers.depth = &frame.depth;
+    if (options.layers.normals) layers.normals = &frame.normals;
+    if (options.layers.ids) layers.objects = &frame.objects, layers.triangles = &frame.triangles;
+    return write_exr(path, layers);
+}
+
+Status write_depth(ImageFormat format, const Frame& frame, const std::string& path) {
+    const Camera& camera = frame.screen.camera();
+    if (format == ImageFormat::png) {
+        return write_depth_png(path, frame.depth, camera.near_plane, camera.far_plane);
+    }
+    if (format == ImageFormat::npy) return write_npy(path, frame.depth);
+    ExrLayers layers;
+    layers.depth = &frame.depth;
+    return write_exr(path, layers);
+}
+
+Status write_ids(ImageFormat format, const Frame& frame, const std::string& path) {
+    if (format == ImageFormat::png) return write_ids_png(path, frame.triangles);
+    if (format == ImageFormat::npy) return write_npy(path, frame.triangles);
+    ExrLayers layers;
+    layers.objects = &frame.objects;
+    layers.triangles = &frame.triangles;
+    return write_exr(path, layers);
+}
+
+Status write_normals(ImageFormat format, const Frame& frame, const std::string& path) {
+    if (format == ImageFormat::png) return write_normals_png(path, frame.normals);
+    if (format == ImageFormat::npy) return write_npy(path, frame.normals);
+    ExrLayers layers;
+    layers.normals = &frame.normals;
+    return write_exr(path, layers);
+}
+
+Status write_frame(const RenderOptions& options, const Frame& frame) {
+    OutputBatch batch;
+    if (options.color) {
+        batch.add(*options.color,
+                  [&](const std::string& path) { return write_color(options, frame, path); });
+    }
+    const auto add = [&](const std::optional<Output>& output, auto write) {
+        if (!output) return;
+        const ImageFormat format = output->format;
+        batch.add(*output, [&frame, format, write](const std::string& path) {
+            return write(format, frame, path);
+        });
+    };
+    add(options.depth, write_depth);
+    add(options.ids, write_ids);
+    add(options.normals, write_normals);
+    add(options.mask, [](ImageFormat format, const Frame& f, const std::string& path) {
+        return format == ImageFormat::png ? write_mask_png(path, f.mask) : write_npy(path, f.mask);
+    });
+    return batch.publish();
+}
+
+// -- what is reported --------------------------------------------------------------------------
+
+struct Times {
+    double load = 0, project = 0, resolve = 0, shade = 0, write = 0;
+};
+
+std::vector<Row> report_rows(const RenderOptions& options, Shading shading, const Scene& scene,
+                             const Frame& frame, const Times& times) {
+    const ProjectCounts& counts = frame.screen.counts();
+    const double candidates = static_cast<double>(counts.triangles - counts.degenerate);
+    const double culled =
+        candidates > 0 ? 100 * static_cast<double>(counts.culled) / candidates : 0;
+    std::vector<Row> rows = {
+        {"load_ms", "load", milliseconds(times.load), "ms"},
+        {"project_ms", "project", milliseconds(times.project), "ms"},
+        {"resolve_ms", "resolve", milliseconds(times.resolve), "ms"},
+        {"shade_ms", "shade", milliseconds(times.shade), "ms"},
+        {"write_ms", "write", milliseconds(times.write), "ms"},
+        {"algorithm", "algorithm", options.algorithm->name, ""},
+        {"shading", "shading", name_of(shading), ""},
+        {"width", "width", options.resolution.width, "pixels"},
+        {"height", "height", options.resolution.height, "pixels"},
+        {"samples", "samples a pixel", options.per_axis * options.per_axis, ""},
+        {"objects", "objects", std::uint64_t{scene.objects.size()}, ""},
+        {"polygons", "polygons", scene.counts.polygons, ""},
+        {"concave_polygons", "concave polygons", scene.counts.concave_polygons, ""},
+        {"ignored_primitives", "points and lines ignored", scene.counts.ignored_primitives, ""},
+        {"triangles", "triangles", counts.triangles, ""},
+        {"degenerate_triangles", "degenerate triangles dropped", counts.degenerate, ""},
+        {"back_facing", "triangles that face away", counts.back_facing, ""},
+        {"culled", "triangles culled by side", counts.culled, ""},
+        {"culled_percent", "share culled", std::round(100 * culled) / 100, "%"},
+        {"outside", "triangles outside of the view", counts.outside, ""},
+        {"clipped", "triangles clipped", counts.clipped, ""},
+        {"pieces", "pieces they left", counts.pieces, ""},
+    };
+    for (const Counter& counter : frame.counters) {
+        std::string key = counter.name;
+        std::replace(key.begin(), key.end(), ' ', '_');
+        rows.push_back({key, counter.name, counter.value, ""});
+    }
+    rows.push_back({"peak_rss_mb", "peak memory", std::round(10 * peak_memory_mib()) / 10, "MiB"});
+    return rows;
+}
+
+Status report(const RenderOptions& options, const std::vector<Row>& rows) {
+    if (options.common.stats) fmt::print(stderr, "{}", to_table(rows));
+    if (options.common.json) return print(to_json(to_object(rows)) + "\n");
+    return success();
+}
+
+void warn_about_translucency(const RenderOptions& options, const Scene& scene, Progress& progress) {
+    if (options.common.quiet || !has_translucent_faces(scene)) return;
+    progress.clear();
+    fmt::print(stderr, "sightline: warning: '{}' can't blend: translucent faces are drawn opaque\n",
+               options.algorithm->name);
+}
+
+Result<int> run(const Arguments& arguments) {
+    const Result<RenderOptions> parsed = read_options(arguments);
+    if (!parsed) return parsed.error();
+    const RenderOptions& options = *parsed;
+    Progress progress(options.common.quiet);
+    Stopwatch watch;
+    Times times;
+
+    progress.stage("loading");
+    const Result<Scene> scene = load(options);
+    if (!scene) return scene.error();
+    const Shading shading = decide_shading(options, *scene);
+    warn_about_translucency(options, *scene, progress);
+    times.load = watch.lap();
+
+    progress.stage("projecting");
+    const auto camera = camera_for(*scene, options.camera, options.resolution);
+    if (!camera) return camera.error();
+    auto screen = project(*scene, *camera, {options.cull, options.common.threads});
+    if (!screen) return screen.error();
+    Frame frame;
+    frame.screen = std::move(*screen);
+    times.project = watch.lap();
+
+    progress.stage("deciding what is visible");
+    if (Status done = resolve_samples(options, frame); !done) return done.error();
+    times.resolve = watch.lap();
+
+    progress.stage("shading");
+    shade_frame(options, shading, frame);
+    times.shade = watch.lap();
+
+    progress.stage("writing");
+    if (Status done = write_frame(options, frame); !done) return done.error();
+    times.write = watch.lap();
+    progress.clear();
+    if (Status done = report(options, report_rows(options, shading, *scene, frame, times)); !done) {
+        return done.error();
+    }
+    return 0;
+}
+
+constexpr std::array kOutputRows = {
+    Option{"--output", "FILE", "the picture: .png, .exr or .npy; '-' is standard output", "-o"},
+    Option{"--output-format", "NAME", "png, exr or npy, whatever the extension; needed for '-'"},
+    Option{"--depth", "FILE", "distance along the gaze: .png (16 bit), .exr or .npy"},
+    Option{"--ids", "FILE", "number of the visible triangle: .npy, .exr or .png"},
+    Option{"--normals", "FILE", "normals in the world: .npy, .exr or .png"},
+    Option{"--mask", "FILE", "where something is seen: .npy or .png"},
+    Option{"--aov", "LIST", "more channels of an EXR picture: normals,ids"},
+};
+
+const std::array kLookRows = {
+    Option{"--algorithm", "NAME", "how visibility is decided ('sightline algorithms' lists them)"},
+    kCullOption,
+    Option{"--samples", "N", "samples a pixel: 1 (default), 4, 16 or 64"},
+    Option{"--shading", "NAME",
+           "flat, gouraud, phong, unlit, depth, normals, ids (default: phong where the file has "
+           "normals, else flat)"},
+    Option{"--crease-angle", "DEG", "sharper edges split the normals that are made (default: 30)"},
+    Option{"--background", "COLOUR", "R,G,B[,A] in 0..255, '#rrggbb[aa]' or none (default: white)"},
+    Option{"--opacity", "[NAME=]F", "0..1, of everything or of one material or object; repeatable"},
+};
+
+const std::array kGroups = {OptionGroup{"Output", kOutputRows}, OptionGroup{"Picture", kLookRows},
+                            OptionGroup{"Camera", kCameraOptions},
+                            OptionGroup{"Input", kModelOptions},
+                            OptionGroup{"Common", kCommonOptions}};
+
+constexpr std::array kExamples = {
+    Example{"sightline render bunny.obj -o bunny.png", "the whole model, isometric"},
+    Example{"sightline render house.glb --view front --projection orthographic --samples 16 -o "
+            "front.png",
+            "an antialiased elevation"},
+    Example{"sightline render bunny.obj --direction -1,-1,-1 --depth d.npy --ids i.npy",
+            "maps for a data set, without a picture"},
+    Example{"cat bunny.ply | sightline render - --format ply -o - --output-format png > b.png",
+            "in a pipe"},
+};
+
+}  // namespace
+
+const Command kRender = {"render",
+                         "picture of a model",
+                         "MODEL...",
+                         "Draws one or several models (or a scene.json) as seen by a camera. "
+                         "Without camera options the\n"
+                         "whole model is in view.",
+                         kGroups,
+                         kExamples,
+                         run};
+
+}  // namespace sightline::cli

@@ -1,0 +1,139 @@
+// Tables and JSON (the only file that includes the JSON library: it is heavy), and measuring.
+#include "report.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "errors.hpp"
+
+namespace sightline::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct JsonMaker {
+    Json operator()(std::nullptr_t) const { return nullptr; }
+    Json operator()(bool flag) const { return flag; }
+    Json operator()(std::uint64_t number) const { return number; }
+    Json operator()(double number) const { return number; }
+    Json operator()(const std::string& text) const { return text; }
+    Json operator()(const Value::List& list) const {
+        Json json = Json::array();
+        for (const Value& item : list) json.push_back(std::visit(*this, item.data()));
+        return json;
+    }
+    Json operator()(const Value::Object& object) const {
+        Json json = Json::object();
+        for (const auto& [key, value] : object) json[key] = std::visit(*this, value.data());
+        return json;
+    }
+};
+
+std::string cell(const Value& value) {
+    const Value::Data& data = value.data();
+    if (const auto* text = std::get_if<std::string>(&data)) return *text;
+    if (const auto* number = std::get_if<double>(&data)) return fmt::format("{:.2f}", *number);
+    if (const auto* flag = std::get_if<bool>(&data)) return *flag ? "yes" : "no";
+    return to_json(value);
+}
+
+bool is_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789.-+e%") == std::string_view::npos;
+}
+
+/// "VmHWM:   1234 kB" of /proc/self/status.
+std::optional<double> high_water_mib() {
+    std::ifstream status("/proc/self/status");
+    std::string word;
+    while (status >> word) {
+        double kib = 0;
+        if (word == "VmHWM:" && status >> kib) return kib / 1024;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string to_json(const Value& value) {
+    const Json json = std::visit(JsonMaker{}, value.data());
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Value milliseconds(double ms) { return std::round(ms * 1000) / 1000; }
+
+std::string to_table(const std::vector<Row>& rows) {
+    std::size_t left = 0, right = 0;
+    for (const Row& row : rows) {
+        left = std::max(left, row.title.size());
+        if (!std::holds_alternative<std::string>(row.value.data())) {
+            right = std::max(right, cell(row.value).size());
+        }
+    }
+    std::string table;
+    for (const Row& row : rows) {
+        table +=
+            fmt::format("{:<{}}  {:>{}} {}", row.title, left, cell(row.value), right, row.unit);
+        while (table.back() == ' ') table.pop_back();
+        table += '\n';
+    }
+    return table;
+}
+
+Value::Object to_object(const std::vector<Row>& rows) {
+    Value::Object object;
+    for (const Row& row : rows) object.emplace_back(row.key, row.value);
+    return object;
+}
+
+std::string to_grid(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    const auto is_right = [&](std::size_t column) {
+        return rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
+                   return column < row.size() && is_number(row[column]);
+               });
+    };
+    std::string grid;
+    for (const auto& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            grid += is_right(i) ? fmt::format("{:>{}}  ", row[i], widths[i])
+                                : fmt::format("{:<{}}  ", row[i], widths[i]);
+        }
+        while (!grid.empty() && grid.back() == ' ') grid.pop_back();
+        grid += '\n';
+    }
+    return grid;
+}
+
+Status print(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (written && std::fflush(stdout) == 0) return success();
+    return failure("cannot write to standard output: {}; free some space or write elsewhere",
+                   std::system_category().message(errno));
+}
+
+double peak_memory_mib() {
+    if (const auto mib = high_water_mib()) return *mib;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+bool reset_peak_memory() {
+    std::ofstream clear("/proc/self/clear_refs");
+    clear << "5" << std::flush;
+    return clear.good();
+}
+
+}  // namespace sightline::cli
