@@ -94,6 +94,11 @@ public:
         return sheet != kNone && sheet_planes_[sheet].c != 0 ? sheet : kNone;
     }
 
+    /// The plane of a sheet in this view; c = 0 when it is not in force.
+    [[nodiscard]] const Plane& sheet_plane(std::uint32_t sheet) const {
+        return sheet_planes_[sheet];
+    }
+
     // -- the view ----------------------------------------------------------------------------
 
     [[nodiscard]] const Scene& scene() const { return *scene_; }

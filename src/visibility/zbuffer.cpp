@@ -17,7 +17,9 @@
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "visibility/algorithms.hpp"
@@ -29,6 +31,8 @@ namespace sightline {
 namespace {
 
 using namespace zbuffer;
+
+constexpr float kNotShared = std::numeric_limits<float>::quiet_NaN();
 
 /// What a chunk of triangles puts into each tile: numbers sorted by tile.
 struct Bins {
@@ -87,6 +91,8 @@ public:
 
     void run() {
         make_chunks();
+        order_chunks();
+        make_shared_gradients();
         bins_.resize(chunks_.size());
         for_each_index(static_cast<std::uint32_t>(chunks_.size()), options_, [&](std::uint32_t c) {
             thread_local Selected selected;
@@ -117,48 +123,72 @@ private:
         add(screen_.pieces(), {}, screen_.scene().triangle_count());
     }
 
-    void draw_tile(std::uint32_t index) {
-        thread_local auto tile = std::make_unique<Tile>();
-        const auto tx = static_cast<std::int32_t>(index) % grid_.tiles_x;
-        const auto ty = static_cast<std::int32_t>(index) / grid_.tiles_x;
-        constexpr auto kSize = static_cast<std::int32_t>(kTileSize);
-        tile->column = tx * kSize;
-        tile->row = ty * kSize;
-        tile->width = std::min(kSize, grid_.columns - tile->column);
-        tile->height = std::min(kSize, grid_.rows - tile->row);
-        if (options_.observer != nullptr)
-            options_.observer->step({StepKind::tile_entered, kNone, kNone,
-                                     static_cast<std::uint32_t>(tile->column),
-                                     static_cast<std::uint32_t>(tile->row),
-                                     static_cast<std::uint32_t>(tile->column + tile->width),
-                                     static_cast<std::uint32_t>(tile->row + tile->height)});
-        clear_tile(*tile);
-        for (const Bins& bins : bins_)
-            draw_triangles(screen_, grid_, bins.of(index), options_.observer, *tile,
-                           counts_[index]);
-        write_tile(*tile);
+    // Chunks whose triangles lie near come first, so that hierarchical depth dismisses the others.
+    // A few corners tell well enough; the answer does not depend on the order.
+    void order_chunks() {
+        constexpr std::size_t kProbes = 16;
+        std::vector<std::int64_t> depth(chunks_.size(), 0);
+        for (std::size_t c = 0; c < chunks_.size(); ++c) {
+            const std::span<const Corners> corners = chunks_[c].corners;
+            for (std::size_t k = 0; k < kProbes; ++k)
+                depth[c] += screen_.zs()[corners[k * corners.size() / kProbes].x];
+        }
+        front_to_back_.resize(chunks_.size());
+        std::iota(front_to_back_.begin(), front_to_back_.end(), 0u);
+        std::stable_sort(front_to_back_.begin(), front_to_back_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return depth[a] < depth[b]; });
     }
 
-    void write_tile(const Tile& tile) {
-        const auto width = static_cast<std::size_t>(tile.width);
-        for (std::int32_t row = 0; row < tile.height; ++row) {
-            const std::size_t from = static_cast<std::size_t>(row) * Tile::kStride;
-            const std::size_t to =
-                static_cast<std::size_t>(tile.row + row) * static_cast<std::size_t>(grid_.columns) +
-                static_cast<std::size_t>(tile.column);
-            std::copy_n(tile.ids + from, width, out_.ids.data() + to);
-            std::copy_n(tile.depth + from, width, out_.depth.data() + to);
-        }
+    // Depth of shared planes, by sheet: float arithmetic that the raster stage can gather.
+    void make_shared_gradients() {
+        const auto sheets = static_cast<std::uint32_t>(screen_.scene().sheets.count());
+        shared_.resize(sheets);
+        constexpr std::uint32_t kGrain = 1024;
+        for_each_index((sheets + kGrain - 1) / kGrain, options_, [&](std::uint32_t chunk) {
+            const std::uint32_t end = std::min(sheets, (chunk + 1) * kGrain);
+            for (std::uint32_t s = chunk * kGrain; s < end; ++s) {
+                const Plane& plane = screen_.sheet_plane(s);
+                const DepthGradient g =
+                    plane.c == 0 ? DepthGradient{kNotShared, 0, 0} : depth_gradient(plane);
+                shared_[s] = {g.gx, g.gy, g.z0, plane.at.x, plane.at.y};
+            }
+        });
+    }
+
+    void place_tile(std::uint32_t index, Tile& tile) const {
+        constexpr auto kSize = static_cast<std::int32_t>(kTileSize);
+        tile.column = static_cast<std::int32_t>(index) % grid_.tiles_x * kSize;
+        tile.row = static_cast<std::int32_t>(index) / grid_.tiles_x * kSize;
+        tile.width = std::min(kSize, grid_.columns - tile.column);
+        tile.height = std::min(kSize, grid_.rows - tile.row);
+        if (options_.observer != nullptr)
+            options_.observer->step({StepKind::tile_entered, kNone, kNone,
+                                     static_cast<std::uint32_t>(tile.column),
+                                     static_cast<std::uint32_t>(tile.row),
+                                     static_cast<std::uint32_t>(tile.column + tile.width),
+                                     static_cast<std::uint32_t>(tile.row + tile.height)});
+    }
+
+    void draw_tile(std::uint32_t index) {
+        thread_local const auto tile = std::make_unique<Tile>();
+        place_tile(index, *tile);
+        clear_tile(*tile);
+        const RasterInput input{screen_, grid_, shared_, options_.observer};
+        for (const std::uint32_t c : front_to_back_)
+            draw_triangles(input, bins_[c].of(index), *tile, counts_[index]);
+        write_tile(*tile, grid_, out_.ids.data(), out_.depth.data());
     }
 
     void report() {
         TileCounts sum;
         for (const TileCounts& c : counts_) {
             sum.triangles += c.triangles;
+            sum.hidden += c.hidden;
             sum.exact += c.exact;
         }
         count(options_, "tiles", counts_.size());
-        count(options_, "triangles drawn in tiles", sum.triangles);
+        count(options_, "triangles set up in tiles", sum.triangles);
+        count(options_, "triangles found hidden by blocks", sum.hidden);
         count(options_, "exact comparisons", sum.exact);
     }
 
@@ -167,6 +197,8 @@ private:
     Visibility& out_;
     GridUnits grid_;
     std::vector<TriangleRange> chunks_;
+    std::vector<std::uint32_t> front_to_back_;
+    std::vector<SharedGradient> shared_;
     std::vector<Bins> bins_;
     std::vector<TileCounts> counts_;
 };

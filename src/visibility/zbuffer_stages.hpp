@@ -1,4 +1,4 @@
-// The two SIMD stages of the z-buffer, and what they share with its driver.
+// The SIMD stages of the z-buffer, and what they share with its driver.
 //
 // Samples are counted in columns and rows of the grid; sample (i, j) stands at
 // (offset + i * step, offset + j * step) in units of the screen, step a power of two.
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/visibility.hpp"
+#include "visibility/stored_depth.hpp"
 
 namespace sightline::zbuffer {
 
@@ -24,6 +25,13 @@ struct GridUnits {
 
     [[nodiscard]] std::int32_t position(std::int32_t index) const {
         return offset + (index << step_bits);
+    }
+    /// First sample at or after, and last at or before, a coordinate of the screen.
+    [[nodiscard]] std::int32_t first_from(std::int32_t x) const {
+        return (x - offset + (1 << step_bits) - 1) >> step_bits;
+    }
+    [[nodiscard]] std::int32_t last_until(std::int32_t x) const {
+        return (x - offset) >> step_bits;
     }
 };
 
@@ -51,23 +59,66 @@ void select_triangles(const ScreenScene& screen, const GridUnits& grid, const Tr
 /// stored from any column.
 struct Tile {
     static constexpr std::uint32_t kStride = kTileSize + 16;
+    static constexpr std::uint32_t kBlockBits = 3;  ///< a block is 8 x 8 samples
+    static constexpr std::uint32_t kBlocks = kTileSize >> kBlockBits;
+
     alignas(64) float depth[kTileSize * kStride];
     alignas(64) std::uint32_t ids[kTileSize * kStride];
+    /// Hierarchical depth: no stored depth of the block is greater.
+    alignas(64) float block_max[kBlocks * kBlocks];
+    float tile_max = 0;
+    bool knows_depth = false;  ///< block_max holds more than infinities
+    std::uint32_t drawn = 0;   ///< triangles since block_max was brought up to date
+
     std::int32_t column = 0, row = 0;  ///< of its first sample in the grid
     std::int32_t width = 0, height = 0;
+
+    [[nodiscard]] static std::size_t index(std::int32_t column, std::int32_t row) {
+        return static_cast<std::size_t>(row) * kStride + static_cast<std::size_t>(column);
+    }
 };
 
 struct TileCounts {
-    std::uint64_t triangles = 0;  ///< set up in a tile
+    std::uint64_t triangles = 0;  ///< that passed the tests of their box in a tile
+    std::uint64_t hidden = 0;     ///< dismissed by hierarchical depth
     std::uint64_t exact = 0;      ///< comparisons that the float filter could not decide
 };
 
-/// Raster stage: clears the tile's part of the picture.
+/// Depth of a sheet's shared plane, as depth_gradient() gives it. gx is NaN when the plane is not
+/// in force.
+struct SharedGradient {
+    float gx, gy, z0;
+    std::int32_t x, y;
+};
+
+/// What the raster stage needs to know.
+struct RasterInput {
+    const ScreenScene& screen;
+    const GridUnits& grid;
+    std::span<const SharedGradient> shared;  ///< by sheet
+    Observer* observer = nullptr;
+};
+
+/// Beyond this distance two stored depths are in the order of the true ones. The sum or difference
+/// of a depth and this is a float below 2^31, so it is off by at most 64.
+inline constexpr float kUncertain = 1024.0f;
+static_assert(kUncertain - 64 > 2 * kStoredDepthError);
+
+/// The canonical order at a sample that two triangles cover: exact depth, then id.
+[[nodiscard]] bool comes_before(const RasterInput& input, std::uint32_t id, std::uint32_t owner,
+                                std::int32_t x, std::int32_t y, TileCounts& counts);
+
+/// Clears a tile.
 void clear_tile(Tile& tile);
 
-/// Raster stage: draws triangles, by number, into a tile.
-void draw_triangles(const ScreenScene& screen, const GridUnits& grid,
-                    std::span<const std::uint32_t> triangles, Observer* observer, Tile& tile,
+/// Draws triangles, by number, into a tile: many small ones at a time, the rest one by one.
+void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
                     TileCounts& counts);
+
+/// Draws one triangle of any size and steepness; tells the observer of each step.
+void draw_large(const RasterInput& input, std::uint32_t triangle, Tile& tile, TileCounts& counts);
+
+/// Writes the tile's samples to the picture, past the caches where that is possible.
+void write_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth);
 
 }  // namespace sightline::zbuffer
