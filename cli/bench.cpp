@@ -120,8 +120,9 @@ Result<ScreenScene> time_frames(const BenchOptions& options, const Scene& scene,
     for (unsigned i = 0; i < kWarmUps + options.frames; ++i) {
         progress.stage("frame", i + 1, kWarmUps + options.frames);
         Stopwatch watch;
-        screen = project(scene, camera, {options.cull, options.common.threads});
-        if (!screen) return screen;
+        const Status projected =
+            project(scene, camera, {options.cull, options.common.threads}, *screen);
+        if (!projected) return projected.error();
         const double project_ms = watch.lap();
         const Status done =
             resolve(*options.algorithm, *screen, {1, options.common.threads}, visibility);

@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "sightline/aligned_vector.hpp"
 #include "sightline/camera.hpp"
 #include "sightline/scene.hpp"
 
@@ -22,9 +23,9 @@ inline constexpr int kDepthBits = 30;  ///< Z of docs/exactness.md
 inline constexpr std::int32_t kDepthMax = (std::int32_t{1} << kDepthBits) - 1;
 inline constexpr int kCoordBits = 23;  ///< b: extent of x and y, guard band included
 
-/// A snapped point.
-struct ScreenPoint {
-    std::int32_t x = 0, y = 0, z = 0;
+/// A snapped point. Sixteen bytes, so that none lies across two cache lines.
+struct alignas(16) ScreenPoint {
+    std::int32_t x, y, z;
     friend bool operator==(const ScreenPoint&, const ScreenPoint&) = default;
 };
 
@@ -32,7 +33,7 @@ struct ScreenPoint {
 /// c = 0: the plane is seen edge-on and has no depth. |a|, |b| < 2^(b+Z+1), c < 2^(2b+1).
 struct Plane {
     std::int64_t a = 0, b = 0, c = 0;
-    ScreenPoint at;
+    ScreenPoint at{};
     friend bool operator==(const Plane&, const Plane&) = default;
 };
 
@@ -78,9 +79,7 @@ public:
         const std::uint32_t n = scene_->triangle_count();
         return k < n ? k : piece_ids_[k - n];
     }
-    [[nodiscard]] ScreenPoint point(std::uint32_t index) const {
-        return {x_[index], y_[index], z_[index]};
-    }
+    [[nodiscard]] const ScreenPoint& point(std::uint32_t index) const { return points_[index]; }
 
     // -- planes ------------------------------------------------------------------------------
 
@@ -111,11 +110,9 @@ public:
     /// same bits everywhere.
     [[nodiscard]] double metric_depth(double z) const;
 
-    // -- structure of arrays, for algorithms that take many triangles at a time ----------------
+    // -- arrays, for algorithms that take many triangles at a time ----------------
 
-    [[nodiscard]] std::span<const std::int32_t> xs() const { return x_; }
-    [[nodiscard]] std::span<const std::int32_t> ys() const { return y_; }
-    [[nodiscard]] std::span<const std::int32_t> zs() const { return z_; }
+    [[nodiscard]] std::span<const ScreenPoint> points() const { return points_; }
     /// One byte a triangle of the scene, not 0 = not drawable; empty when all are drawable.
     [[nodiscard]] std::span<const std::uint8_t> skip() const { return skip_; }
     /// Corners of the pieces: screen triangle scene().triangle_count() + i is pieces()[i].
@@ -128,7 +125,7 @@ private:
     Camera camera_;
     int subpixel_bits_ = 8;
     ProjectCounts counts_;
-    std::vector<std::int32_t> x_, y_, z_;  // snapped positions of the scene, then clip points
+    AlignedVector<ScreenPoint> points_;  // snapped positions of the scene, then clip points
     std::vector<std::uint8_t> skip_;
     std::vector<Corners> pieces_;           // of clipped triangles
     std::vector<std::uint32_t> piece_ids_;  // the triangle of each piece, ascending
@@ -141,5 +138,9 @@ private:
 /// Error (bad_option): a picture too wide for the coordinates (over 65,536 a side).
 [[nodiscard]] Result<ScreenScene> project(const Scene& scene, const Camera& camera,
                                           const ProjectOptions& options = {});
+
+/// The same into `out`, whose memory is reused: for one frame after another.
+[[nodiscard]] Status project(const Scene& scene, const Camera& camera,
+                             const ProjectOptions& options, ScreenScene& out);
 
 }  // namespace sightline

@@ -6,13 +6,12 @@
 #pragma once
 
 #include <cstdint>
-#include <new>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
+#include "sightline/aligned_vector.hpp"
 #include "sightline/error.hpp"
 #include "sightline/screen_scene.hpp"
 
@@ -34,41 +33,13 @@ struct SampleGrid {
     [[nodiscard]] std::int32_t offset(int subpixel_bits) const { return step(subpixel_bits) / 2; }
 };
 
-/// Memory for samples: aligned to cache lines, so that finished rows can be streamed out, and left
-/// uninitialised by resize(), since an algorithm writes every sample.
-template <class T>
-struct SampleAllocator {
-    using value_type = T;
-    static constexpr std::align_val_t kAlignment{64};
-
-    SampleAllocator() = default;
-    template <class U>
-    SampleAllocator(const SampleAllocator<U>&) noexcept {}
-    [[nodiscard]] T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new(n * sizeof(T), kAlignment));
-    }
-    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, kAlignment); }
-    template <class U>
-    void construct(U* p) noexcept {
-        ::new (static_cast<void*>(p)) U;
-    }
-    template <class U, class... A>
-    void construct(U* p, A&&... a) {
-        ::new (static_cast<void*>(p)) U(std::forward<A>(a)...);
-    }
-    friend bool operator==(SampleAllocator, SampleAllocator) { return true; }
-};
-
-template <class T>
-using SampleVector = std::vector<T, SampleAllocator<T>>;
-
 /// What is seen at every sample of a grid: ids and depth, row by row from the top.
 struct Visibility {
     SampleGrid grid;
-    SampleVector<std::uint32_t> ids;  ///< of triangles; kNone where nothing is seen
+    AlignedVector<std::uint32_t> ids;  ///< of triangles; kNone where nothing is seen
     /// z of the winner in units of the depth grid, as stored_depth() gives it; infinity where
     /// nothing is seen. For lengths in the scene's unit see depth_map().
-    SampleVector<float> depth;
+    AlignedVector<float> depth;
 };
 
 /// The depth of a plane at a point of the screen, in units of the depth grid: computed from the

@@ -35,7 +35,13 @@ void parallel_ranges(std::size_t n, const Body& body) {
 
 class Projector {
 public:
-    Projector(const Scene& scene, const Camera& camera, Cull cull) : cull_(cull) {
+    Projector(const Scene& scene, const Camera& camera, Cull cull, ScreenScene& screen)
+        : screen_(screen), cull_(cull) {
+        screen_.counts_ = {};
+        screen_.skip_.clear();
+        screen_.pieces_.clear();
+        screen_.piece_ids_.clear();
+        screen_.clipped_planes_.clear();
         screen_.scene_ = &scene;
         screen_.camera_ = camera;
         screen_.subpixel_bits_ = subpixel_bits_for(camera.resolution);
@@ -43,13 +49,12 @@ public:
         transform_ = make_transform(camera, screen_.subpixel_bits_);
     }
 
-    ScreenScene run() {
+    void run() {
         snap_positions_of_scene();
         find_drawn_sides();
         mark_triangles();
         clip_marked();
         make_sheet_planes();
-        return std::move(screen_);
     }
 
 private:
@@ -57,24 +62,24 @@ private:
 
     void snap_positions_of_scene() {
         const auto& positions = scene().positions;
-        screen_.x_.resize(positions.size());
-        screen_.y_.resize(positions.size());
-        screen_.z_.resize(positions.size());
+        screen_.points_.resize(positions.size());
         std::atomic<std::size_t> outside{0};
         parallel_ranges(positions.size(), [&](std::size_t begin, std::size_t end) {
             outside += snap_positions(transform_, std::span(positions).subspan(begin, end - begin),
-                                      screen_.x_.data() + begin, screen_.y_.data() + begin,
-                                      screen_.z_.data() + begin);
+                                      screen_.points_.data() + begin);
         });
         some_outside_ = outside > 0;
     }
 
     // -- which sides of which objects are drawn ------------------------------------------------
 
+    [[nodiscard]] bool is_outside(std::uint32_t point) const {
+        return screen_.points_[point].x == kOutside;
+    }
+
     [[nodiscard]] bool has_outside_corner(std::uint32_t t) const {
         const Corners c = scene().triangles[t];
-        return screen_.x_[c.x] == kOutside || screen_.x_[c.y] == kOutside ||
-               screen_.x_[c.z] == kOutside;
+        return is_outside(c.x) || is_outside(c.y) || is_outside(c.z);
     }
 
     // Back faces of an object are never seen when it is closed, opaque and not cut open by the
@@ -155,10 +160,8 @@ private:
     // -- clipping -----------------------------------------------------------------------------
 
     [[nodiscard]] std::uint32_t add_point(const ScreenPoint& p) {
-        screen_.x_.push_back(p.x);
-        screen_.y_.push_back(p.y);
-        screen_.z_.push_back(p.z);
-        return static_cast<std::uint32_t>(screen_.x_.size() - 1);
+        screen_.points_.push_back(p);
+        return static_cast<std::uint32_t>(screen_.points_.size() - 1);
     }
 
     // A fan of pieces. They share one plane, that of the polygon or of the triangle's sheet.
@@ -195,8 +198,7 @@ private:
     // On the page the frame's corners stay far apart, as they are in the world, unless the sheet
     // reaches so deep that perspective squeezes its far part.
     [[nodiscard]] bool frame_serves(const Corners& frame, const glm::dvec4& ball) const {
-        if (some_outside_ && (screen_.x_[frame.x] == kOutside || screen_.x_[frame.y] == kOutside ||
-                              screen_.x_[frame.z] == kOutside))
+        if (some_outside_ && (is_outside(frame.x) || is_outside(frame.y) || is_outside(frame.z)))
             return false;
         return !transform_.perspective ||
                3 * ball.w <= screen_.camera_.depth_of({ball.x, ball.y, ball.z});
@@ -237,7 +239,7 @@ private:
                           });
     }
 
-    ScreenScene screen_;
+    ScreenScene& screen_;
     ScreenTransform transform_;
     Cull cull_;
     bool some_outside_ = false;
@@ -245,13 +247,21 @@ private:
     std::vector<Facing> culled_side_;  // by object; edge_on: both sides are drawn
 };
 
-Result<ScreenScene> project(const Scene& scene, const Camera& camera,
-                            const ProjectOptions& options) {
+Status project(const Scene& scene, const Camera& camera, const ProjectOptions& options,
+               ScreenScene& out) {
     if (camera.resolution.width == 0 || camera.resolution.height == 0 ||
         std::max(camera.resolution.width, camera.resolution.height) > 65536)
         return Error{ErrorKind::bad_option, "--resolution must be 1 to 65536 pixels a side"};
-    Projector projector(scene, camera, options.cull);
-    return in_arena(options.threads, [&] { return projector.run(); });
+    Projector projector(scene, camera, options.cull, out);
+    in_arena(options.threads, [&] { projector.run(); });
+    return success();
+}
+
+Result<ScreenScene> project(const Scene& scene, const Camera& camera,
+                            const ProjectOptions& options) {
+    ScreenScene screen;
+    if (Status s = project(scene, camera, options, screen); !s) return s.error();
+    return screen;
 }
 
 }  // namespace sightline

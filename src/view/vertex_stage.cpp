@@ -32,7 +32,7 @@ HWY_INLINE hn::Vec<Ints> round_clamped(V value, double lo, double hi) {
 
 // Snaps the Lanes(kD) positions at p; returns how many are outside.
 HWY_INLINE std::size_t snap_vector(const ScreenTransform& t, const double* HWY_RESTRICT p,
-                                   std::int32_t* x, std::int32_t* y, std::int32_t* z) {
+                                   std::int32_t* HWY_RESTRICT out) {
     V px, py, pz;
     hn::LoadInterleaved3(kD, p, px, py, pz);
     const V d = linear(t.d_row, px, py, pz);
@@ -60,31 +60,31 @@ HWY_INLINE std::size_t snap_vector(const ScreenTransform& t, const double* HWY_R
     const V marked =
         hn::IfThenElse(inside, hn::Min(hn::Max(sx, hn::Set(kD, v.x_min)), hn::Set(kD, v.x_max)),
                        hn::Set(kD, kMark));
-    hn::StoreU(hn::DemoteTo(kI, hn::Round(marked)), kI, x);
     // At the eye's plane the others may be no numbers at all.
-    hn::StoreU(round_clamped(hn::IfThenElseZero(inside, sy), v.y_min, v.y_max), kI, y);
-    hn::StoreU(round_clamped(hn::IfThenElseZero(inside, sz), 0.0, kDepthMax), kI, z);
+    hn::StoreInterleaved4(hn::DemoteTo(kI, hn::Round(marked)),
+                          round_clamped(hn::IfThenElseZero(inside, sy), v.y_min, v.y_max),
+                          round_clamped(hn::IfThenElseZero(inside, sz), 0.0, kDepthMax),
+                          hn::Zero(kI), kI, out);
     return hn::Lanes(kD) - hn::CountTrue(kD, inside);
 }
 
 std::size_t snap_all(const ScreenTransform& t, const double* HWY_RESTRICT p, std::size_t n,
-                     std::int32_t* x, std::int32_t* y, std::int32_t* z) {
+                     ScreenPoint* points) {
+    static_assert(sizeof(ScreenPoint) == 4 * sizeof(std::int32_t));
     const std::size_t lanes = hn::Lanes(kD);
     std::size_t outside = 0, i = 0;
-    for (; i + lanes <= n; i += lanes) outside += snap_vector(t, p + 3 * i, x + i, y + i, z + i);
+    for (; i + lanes <= n; i += lanes)
+        outside += snap_vector(t, p + 3 * i, reinterpret_cast<std::int32_t*>(points + i));
     if (i == n) return outside;
 
     double tail[3 * hn::MaxLanes(Doubles())];
-    std::int32_t tx[hn::MaxLanes(Doubles())], ty[hn::MaxLanes(Doubles())],
-        tz[hn::MaxLanes(Doubles())];
+    ScreenPoint snapped[hn::MaxLanes(Doubles())];
     for (std::size_t k = 0; k < lanes; ++k)
         for (std::size_t c = 0; c < 3; ++c) tail[3 * k + c] = p[3 * (i + k < n ? i + k : i) + c];
-    (void)snap_vector(t, tail, tx, ty, tz);
+    (void)snap_vector(t, tail, reinterpret_cast<std::int32_t*>(snapped));
     for (std::size_t k = 0; i + k < n; ++k) {
-        x[i + k] = tx[k];
-        y[i + k] = ty[k];
-        z[i + k] = tz[k];
-        outside += tx[k] == kOutside ? 1 : 0;
+        points[i + k] = snapped[k];
+        outside += snapped[k].x == kOutside ? 1 : 0;
     }
     return outside;
 }
@@ -99,10 +99,10 @@ namespace sightline {
 HWY_EXPORT(snap_all);
 
 std::size_t snap_positions(const ScreenTransform& transform, std::span<const glm::dvec3> positions,
-                           std::int32_t* x, std::int32_t* y, std::int32_t* z) {
+                           ScreenPoint* points) {
     static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
     return HWY_DYNAMIC_DISPATCH(snap_all)(
-        transform, reinterpret_cast<const double*>(positions.data()), positions.size(), x, y, z);
+        transform, reinterpret_cast<const double*>(positions.data()), positions.size(), points);
 }
 
 }  // namespace sightline

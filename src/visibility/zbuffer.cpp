@@ -10,9 +10,11 @@
 // bit.
 //
 // Two stages, both on all cores. Geometry: chunks of consecutive triangles are gathered a vector at
-// a time; what covers no sample is dropped; the rest is sorted into the bins of its tiles, by
-// number (no records are copied). Raster: each tile is owned by one task, which draws its bins,
-// chunk by chunk, into depth and ids that stay in the core's cache, and writes finished rows once.
+// a time; what covers no sample is dropped; triangles of at most 2 x 2 samples are drawn to points
+// at once; the rest goes, by number, into the bins of its tiles. Raster: each tile is owned by one
+// task, which takes its points and triangles, near chunks first, into depth and ids that stay in
+// the core's cache, and writes finished rows once. Under an observer triangles are drawn one by
+// one.
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
 #include <algorithm>
@@ -34,13 +36,28 @@ using namespace zbuffer;
 
 constexpr float kNotShared = std::numeric_limits<float>::quiet_NaN();
 
-/// What a chunk of triangles puts into each tile: numbers sorted by tile.
+/// What a chunk of triangles puts into each tile: items sorted by tile.
+template <class Item>
 struct Bins {
-    std::vector<std::uint32_t> triangles;
+    std::vector<Item> items;
     std::vector<std::uint32_t> first;  ///< of each tile, and the end
 
-    [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t tile) const {
-        return {triangles.data() + first[tile], first[tile + 1] - first[tile]};
+    [[nodiscard]] std::span<const Item> of(std::uint32_t tile) const {
+        return {items.data() + first[tile], first[tile + 1] - first[tile]};
+    }
+
+    /// A counting sort: stable, so that a tile meets its items in ascending order.
+    /// for_each(visit) calls visit(tile, item) for all, in the same order each time.
+    template <class ForEach>
+    void sort(std::size_t tiles, const ForEach& for_each) {
+        first.assign(tiles + 2, 0);
+        for_each([&](std::uint32_t tile, const Item&) { ++first[tile + 2]; });
+        for (std::size_t t = 2; t < first.size(); ++t) first[t] += first[t - 1];
+        items.resize(first.back());
+        // first[tile + 1] runs from the tile's start to its end, which is where the next one
+        // starts.
+        for_each([&](std::uint32_t tile, const Item& item) { items[first[tile + 1]++] = item; });
+        first.pop_back();
     }
 };
 
@@ -55,30 +72,23 @@ GridUnits units_of(const SampleGrid& grid, int subpixel_bits) {
     return units;
 }
 
-template <class Visit>
-void for_each_tile(const Selected& selected, std::size_t i, std::int32_t tiles_x,
-                   const Visit& visit) {
-    const std::uint32_t columns = selected.more[i] & 0xFFFFu, rows = selected.more[i] >> 16;
-    for (std::uint32_t r = 0; r <= rows; ++r)
-        for (std::uint32_t c = 0; c <= columns; ++c)
-            visit(selected.tile[i] + r * static_cast<std::uint32_t>(tiles_x) + c);
+void sort_triangles(const Selected& selected, const GridUnits& grid, Bins<std::uint32_t>& bins) {
+    bins.sort(grid.tile_count(), [&](const auto& visit) {
+        for (std::size_t i = 0; i < selected.count; ++i) {
+            const std::uint32_t columns = selected.more[i] & 0xFFFFu, rows = selected.more[i] >> 16;
+            for (std::uint32_t r = 0; r <= rows; ++r)
+                for (std::uint32_t c = 0; c <= columns; ++c)
+                    visit(selected.tile[i] + r * static_cast<std::uint32_t>(grid.tiles_x) + c,
+                          selected.triangle[i]);
+        }
+    });
 }
 
-// A counting sort: stable, so that a tile meets its triangles in ascending order.
-void sort_into_bins(const Selected& selected, const GridUnits& grid, Bins& bins) {
-    const auto tiles =
-        static_cast<std::size_t>(grid.tiles_x) * static_cast<std::size_t>(grid.tiles_y);
-    bins.first.assign(tiles + 1, 0);
-    for (std::size_t i = 0; i < selected.count; ++i)
-        for_each_tile(selected, i, grid.tiles_x, [&](std::uint32_t t) { ++bins.first[t]; });
-    std::uint32_t sum = 0;
-    for (std::uint32_t& first : bins.first) sum += first, first = sum;
-    bins.triangles.resize(sum);
-    // From the last triangle down, so that each tile's end moves to its start.
-    for (std::size_t i = selected.count; i-- > 0;)
-        for_each_tile(selected, i, grid.tiles_x, [&](std::uint32_t t) {
-            bins.triangles[--bins.first[t]] = selected.triangle[i];
-        });
+void sort_points(const Points& points, const GridUnits& grid, Bins<Point>& bins) {
+    bins.sort(grid.tile_count(), [&](const auto& visit) {
+        for (std::size_t i = 0; i < points.count; ++i)
+            visit(points.place[i] >> (2 * kTileBits), {points.place[i], points.z[i], points.id[i]});
+    });
 }
 
 class ZBuffer {
@@ -93,13 +103,11 @@ public:
         make_chunks();
         order_chunks();
         make_shared_gradients();
-        bins_.resize(chunks_.size());
-        for_each_index(static_cast<std::uint32_t>(chunks_.size()), options_, [&](std::uint32_t c) {
-            thread_local Selected selected;
-            select_triangles(screen_, grid_, chunks_[c], selected);
-            sort_into_bins(selected, grid_, bins_[c]);
-        });
-        const auto tiles = static_cast<std::uint32_t>(grid_.tiles_x * grid_.tiles_y);
+        triangle_bins_.resize(chunks_.size());
+        point_bins_.resize(chunks_.size());
+        for_each_index(static_cast<std::uint32_t>(chunks_.size()), options_,
+                       [&](std::uint32_t c) { take_chunk(c); });
+        const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
         counts_.resize(tiles);
         for_each_index(tiles, options_, [&](std::uint32_t t) { draw_tile(t); });
         report();
@@ -109,7 +117,7 @@ private:
     // Few enough to keep the bins' tables small, many enough to share among cores.
     void make_chunks() {
         const std::span<const Corners> triangles(screen_.scene().triangles);
-        const std::size_t size = std::clamp<std::size_t>(triangles.size() / 64, 2048, 65536);
+        const std::size_t size = std::clamp<std::size_t>(triangles.size() / 64, 2048, 16384);
         const auto add = [&](std::span<const Corners> corners, std::span<const std::uint8_t> skip,
                              std::uint32_t first) {
             for (std::size_t begin = 0; begin < corners.size(); begin += size) {
@@ -131,7 +139,7 @@ private:
         for (std::size_t c = 0; c < chunks_.size(); ++c) {
             const std::span<const Corners> corners = chunks_[c].corners;
             for (std::size_t k = 0; k < kProbes; ++k)
-                depth[c] += screen_.zs()[corners[k * corners.size() / kProbes].x];
+                depth[c] += screen_.point(corners[k * corners.size() / kProbes].x).z;
         }
         front_to_back_.resize(chunks_.size());
         std::iota(front_to_back_.begin(), front_to_back_.end(), 0u);
@@ -155,6 +163,17 @@ private:
         });
     }
 
+    [[nodiscard]] RasterInput input() const { return {screen_, grid_, shared_, options_.observer}; }
+
+    void take_chunk(std::uint32_t c) {
+        thread_local Selected selected;
+        thread_local Points points;
+        select_triangles(screen_, grid_, chunks_[c], selected);
+        draw_tiny(input(), selected, points);
+        sort_triangles(selected, grid_, triangle_bins_[c]);
+        sort_points(points, grid_, point_bins_[c]);
+    }
+
     void place_tile(std::uint32_t index, Tile& tile) const {
         constexpr auto kSize = static_cast<std::int32_t>(kTileSize);
         tile.column = static_cast<std::int32_t>(index) % grid_.tiles_x * kSize;
@@ -173,20 +192,29 @@ private:
         thread_local const auto tile = std::make_unique<Tile>();
         place_tile(index, *tile);
         clear_tile(*tile);
-        const RasterInput input{screen_, grid_, shared_, options_.observer};
-        for (const std::uint32_t c : front_to_back_)
-            draw_triangles(input, bins_[c].of(index), *tile, counts_[index]);
+        const RasterInput raster = input();
+        // One list, so that vectors are full across the chunks.
+        thread_local std::vector<std::uint32_t> triangles;
+        triangles.clear();
+        for (const std::uint32_t c : front_to_back_) {
+            draw_points(raster, point_bins_[c].of(index), *tile, counts_[index]);
+            const std::span<const std::uint32_t> bin = triangle_bins_[c].of(index);
+            triangles.insert(triangles.end(), bin.begin(), bin.end());
+        }
+        draw_triangles(raster, triangles, *tile, counts_[index]);
         write_tile(*tile, grid_, out_.ids.data(), out_.depth.data());
     }
 
     void report() {
         TileCounts sum;
         for (const TileCounts& c : counts_) {
+            sum.points += c.points;
             sum.triangles += c.triangles;
             sum.hidden += c.hidden;
             sum.exact += c.exact;
         }
         count(options_, "tiles", counts_.size());
+        count(options_, "samples of tiny triangles", sum.points);
         count(options_, "triangles set up in tiles", sum.triangles);
         count(options_, "triangles found hidden by blocks", sum.hidden);
         count(options_, "exact comparisons", sum.exact);
@@ -199,7 +227,8 @@ private:
     std::vector<TriangleRange> chunks_;
     std::vector<std::uint32_t> front_to_back_;
     std::vector<SharedGradient> shared_;
-    std::vector<Bins> bins_;
+    std::vector<Bins<std::uint32_t>> triangle_bins_;
+    std::vector<Bins<Point>> point_bins_;
     std::vector<TileCounts> counts_;
 };
 

@@ -51,7 +51,7 @@ HWY_INLINE M covers_sample(const Triangles& t, V sx, V sy) {
 
 struct Boxes {
     V column0, column1, row0, row1;  // first and last sample, clamped to the grid
-    M kept;
+    M kept, narrow;                  // narrow: spans less than three steps
 };
 
 template <class Shift>
@@ -93,27 +93,38 @@ HWY_INLINE void select_vector(const ScreenScene& screen, const GridUnits& grid,
                               const Shift& shift_right, Selected& out) {
     hn::Vec<Uints> c0, c1, c2;
     hn::LoadInterleaved3(kU, corners, c0, c1, c2);
-    const V i0 = hn::BitCast(kI, c0), i1 = hn::BitCast(kI, c1), i2 = hn::BitCast(kI, c2);
-    const std::int32_t *xs = screen.xs().data(), *ys = screen.ys().data();
+    // Four integers a point.
+    const V i0 = hn::ShiftLeft<2>(hn::BitCast(kI, c0)), i1 = hn::ShiftLeft<2>(hn::BitCast(kI, c1)),
+            i2 = hn::ShiftLeft<2>(hn::BitCast(kI, c2));
+    static_assert(sizeof(ScreenPoint) == 4 * sizeof(std::int32_t));
+    const auto* xs = reinterpret_cast<const std::int32_t*>(screen.points().data());
+    const auto* ys = xs + 1;
     const Triangles t{hn::GatherIndex(kI, xs, i0), hn::GatherIndex(kI, ys, i0),
                       hn::GatherIndex(kI, xs, i1), hn::GatherIndex(kI, ys, i1),
                       hn::GatherIndex(kI, xs, i2), hn::GatherIndex(kI, ys, i2)};
     const Boxes b = boxes_of(t, grid, shift_right);
-    const M kept = hn::And(b.kept, wanted);
+    M kept = hn::And(b.kept, wanted);
+    if (hn::AllFalse(kI, kept)) return;
+
+    const V number = hn::Iota(kI, static_cast<std::int32_t>(first));
+    const auto store = [&](V v, M mask, std::uint32_t* to) {
+        return hn::CompressStore(hn::BitCast(kU, v), hn::RebindMask(kU, mask), kU, to);
+    };
+    const V two = hn::Set(kI, 2);
+    const M tiny = hn::And(
+        hn::And(kept, b.narrow),
+        hn::And(hn::Lt(hn::Sub(b.column1, b.column0), two), hn::Lt(hn::Sub(b.row1, b.row0), two)));
+    out.tiny_count += store(number, tiny, out.tiny.data() + out.tiny_count);
+    kept = hn::AndNot(tiny, kept);
     if (hn::AllFalse(kI, kept)) return;
 
     const V tx0 = hn::ShiftRight<kTileBits>(b.column0), tx1 = hn::ShiftRight<kTileBits>(b.column1);
     const V ty0 = hn::ShiftRight<kTileBits>(b.row0), ty1 = hn::ShiftRight<kTileBits>(b.row1);
     const V tile = hn::Add(hn::Mul(ty0, hn::Set(kI, grid.tiles_x)), tx0);
     const V more = hn::Or(hn::Sub(tx1, tx0), hn::ShiftLeft<16>(hn::Sub(ty1, ty0)));
-    const V number = hn::Iota(kI, static_cast<std::int32_t>(first));
-    const auto store = [&](V v, std::vector<std::uint32_t>& to) {
-        return hn::CompressStore(hn::BitCast(kU, v), hn::RebindMask(kU, kept), kU,
-                                 to.data() + out.count);
-    };
-    store(number, out.triangle);
-    store(tile, out.tile);
-    out.count += store(more, out.more);
+    store(number, kept, out.triangle.data() + out.count);
+    store(tile, kept, out.tile.data() + out.count);
+    out.count += store(more, kept, out.more.data() + out.count);
 }
 
 void select(const ScreenScene& screen, const GridUnits& grid, const TriangleRange& range,
@@ -155,9 +166,9 @@ void select_triangles(const ScreenScene& screen, const GridUnits& grid, const Tr
                       Selected& out) {
     // Room for a whole vector behind the last triangle.
     const std::size_t room = range.corners.size() + 64;
-    for (auto* column : {&out.triangle, &out.tile, &out.more})
+    for (auto* column : {&out.tiny, &out.triangle, &out.tile, &out.more})
         if (column->size() < room) column->resize(room);
-    out.count = 0;
+    out.count = out.tiny_count = 0;
     HWY_DYNAMIC_DISPATCH(select)(screen, grid, range, out);
 }
 

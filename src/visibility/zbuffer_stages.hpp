@@ -26,6 +26,9 @@ struct GridUnits {
     [[nodiscard]] std::int32_t position(std::int32_t index) const {
         return offset + (index << step_bits);
     }
+    [[nodiscard]] std::size_t tile_count() const {
+        return static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
+    }
     /// First sample at or after, and last at or before, a coordinate of the screen.
     [[nodiscard]] std::int32_t first_from(std::int32_t x) const {
         return (x - offset + (1 << step_bits) - 1) >> step_bits;
@@ -35,12 +38,29 @@ struct GridUnits {
     }
 };
 
-/// A triangle that may cover samples, and the tiles that its box meets.
+/// Triangles that may cover samples.
 struct Selected {
-    std::vector<std::uint32_t> triangle;  ///< number of the screen triangle
-    std::vector<std::uint32_t> tile;      ///< first tile, row-major
-    std::vector<std::uint32_t> more;      ///< further tiles: columns + (rows << 16)
-    std::size_t count = 0;                ///< used length of the three
+    /// Boxes of at most 2 x 2 samples: their numbers.
+    std::vector<std::uint32_t> tiny;
+    std::size_t tiny_count = 0;
+    /// The others: number, first tile (row-major), further tiles (columns + (rows << 16)).
+    std::vector<std::uint32_t> triangle, tile, more;
+    std::size_t count = 0;
+};
+
+/// A sample that a triangle covers, with its stored depth there.
+struct Point {
+    std::uint32_t place;  ///< tile << 12 | row in the tile << 6 | column in the tile
+    float z;
+    std::uint32_t id;
+};
+static_assert(2 * kTileBits == 12);
+
+/// The samples of tiny triangles, before they are sorted by tile.
+struct Points {
+    std::vector<std::uint32_t> place, id;
+    std::vector<float> z;
+    std::size_t count = 0;
 };
 
 /// Screen triangles with consecutive numbers.
@@ -50,10 +70,10 @@ struct TriangleRange {
     std::uint32_t first = 0;             ///< number of corners[0]
 };
 
-/// Geometry stage: drops what is skipped or whose box holds no sample (and boxes of one sample that
-/// the triangle does not cover), many triangles at a time.
-void select_triangles(const ScreenScene& screen, const GridUnits& grid, const TriangleRange& range,
-                      Selected& out);
+/// A rectangle of samples.
+struct Area {
+    std::int32_t column = 0, row = 0, width = 0, height = 0;
+};
 
 /// Depth and ids of a tile. A row is longer than the tile is wide, so that a full vector may be
 /// stored from any column.
@@ -73,12 +93,14 @@ struct Tile {
     std::int32_t column = 0, row = 0;  ///< of its first sample in the grid
     std::int32_t width = 0, height = 0;
 
+    [[nodiscard]] Area area() const { return {column, row, width, height}; }
     [[nodiscard]] static std::size_t index(std::int32_t column, std::int32_t row) {
         return static_cast<std::size_t>(row) * kStride + static_cast<std::size_t>(column);
     }
 };
 
 struct TileCounts {
+    std::uint64_t points = 0;     ///< samples of tiny triangles
     std::uint64_t triangles = 0;  ///< that passed the tests of their box in a tile
     std::uint64_t hidden = 0;     ///< dismissed by hierarchical depth
     std::uint64_t exact = 0;      ///< comparisons that the float filter could not decide
@@ -108,8 +130,21 @@ static_assert(kUncertain - 64 > 2 * kStoredDepthError);
 [[nodiscard]] bool comes_before(const RasterInput& input, std::uint32_t id, std::uint32_t owner,
                                 std::int32_t x, std::int32_t y, TileCounts& counts);
 
+/// Geometry stage: drops what is skipped or whose box holds no sample (and boxes of one sample that
+/// the triangle does not cover), many triangles at a time.
+void select_triangles(const ScreenScene& screen, const GridUnits& grid, const TriangleRange& range,
+                      Selected& out);
+
+/// Geometry stage: draws the tiny triangles of a selection to points. What can't be (steep ones) is
+/// appended to the others of the selection.
+void draw_tiny(const RasterInput& input, Selected& selected, Points& out);
+
 /// Clears a tile.
 void clear_tile(Tile& tile);
+
+/// Offers points to a tile.
+void draw_points(const RasterInput& input, std::span<const Point> points, Tile& tile,
+                 TileCounts& counts);
 
 /// Draws triangles, by number, into a tile: many small ones at a time, the rest one by one.
 void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
