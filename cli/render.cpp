@@ -5,10 +5,8 @@
 #include <cmath>
 
 #include "errors.hpp"
-#include "materials.hpp"
-#include "options.hpp"
-#include "outputs.hpp"
 #include "progress.hpp"
+#include "render_frame.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "suggest.hpp"
@@ -20,48 +18,6 @@ constexpr std::array kPictureFormats = {ImageFormat::png, ImageFormat::exr, Imag
 constexpr std::array kMaskFormats = {ImageFormat::npy, ImageFormat::png};
 constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;  // what resolve() takes
 constexpr std::uint64_t kMaxPerAxis = 8;
-
-struct Layers {
-    bool normals = false, ids = false;  ///< of --aov
-};
-
-struct RenderOptions {
-    CommonOptions common;
-    Models models;
-    CameraOptions camera;
-    Resolution resolution;
-    const Algorithm* algorithm = nullptr;
-    Cull cull = Cull::automatic;
-    std::uint32_t per_axis = 1;
-    std::optional<Shading> shading;
-    double crease_angle = 30;
-    glm::u8vec4 background{255};
-    std::vector<OpacityRule> opacity;
-    Layers layers;
-    std::optional<Output> color, depth, ids, normals, mask;
-
-    /// Whether something is written that is resolved at the pixels' centres.
-    [[nodiscard]] bool needs_centres() const {
-        return depth || ids || normals || mask || (color && color->format == ImageFormat::exr);
-    }
-};
-
-/// Everything between a scene and its files.
-struct Frame {
-    ScreenScene screen;
-    Visibility samples, centre_store;
-    ColorImage color;
-    DepthImage depth;
-    IdImage triangles, objects;
-    NormalImage normals;
-    MaskImage mask;
-    std::vector<Counter> counters;
-
-    /// Visibility at the pixels' centres; with one sample a pixel it is that of the picture.
-    [[nodiscard]] const Visibility& centres() const {
-        return samples.grid.per_axis == 1 && !samples.ids.empty() ? samples : centre_store;
-    }
-};
 
 // -- options -----------------------------------------------------------------------------------
 
@@ -169,118 +125,12 @@ Shading decide_shading(const RenderOptions& options, const Scene& scene) {
     return has_normals ? Shading::phong : Shading::flat;
 }
 
-bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading == Shading::phong; }
-
-/// Linear light, premultiplied.
-glm::vec4 linear_color(glm::u8vec4 srgb) {
-    const float alpha = static_cast<float>(srgb.a) / 255.0f;
-    return {alpha * from_srgb8(srgb.r), alpha * from_srgb8(srgb.g), alpha * from_srgb8(srgb.b),
-            alpha};
-}
-
 Result<Scene> load(const RenderOptions& options) {
     Result<Scene> scene = load_scene(options.models.paths, options.models.options);
     if (!scene) return scene;
     if (Status done = apply_opacity(*scene, options.opacity); !done) return done.error();
     if (options.shading && is_smooth(*options.shading)) make_normals(*scene, options.crease_angle);
     return scene;
-}
-
-Status resolve_samples(const RenderOptions& options, Frame& frame) {
-    ResolveOptions resolving{options.per_axis, options.common.threads, nullptr, &frame.counters};
-    if (options.color) {
-        if (Status done = resolve(*options.algorithm, frame.screen, resolving, frame.samples);
-            !done) {
-            return done;
-        }
-    }
-    if (!options.needs_centres() || (options.color && options.per_axis == 1)) return success();
-    resolving.samples_per_axis = 1;
-    // The counters of the picture are those to report.
-    if (options.color) resolving.counters = nullptr;
-    return resolve(*options.algorithm, frame.screen, resolving, frame.centre_store);
-}
-
-void shade_frame(const RenderOptions& options, Shading shading, Frame& frame) {
-    if (options.color) {
-        frame.color = shade(frame.screen, frame.samples,
-                            {shading, linear_color(options.background), options.common.threads});
-    }
-    if (!options.needs_centres()) return;
-    const Visibility& centres = frame.centres();
-    const bool is_exr = options.color && options.color->format == ImageFormat::exr;
-    if (options.depth || is_exr) frame.depth = depth_map(frame.screen, centres);
-    if (options.ids || options.layers.ids) {
-        frame.triangles = triangle_map(centres);
-        frame.objects = object_map(frame.screen, centres);
-    }
-    if (options.normals || options.layers.normals) {
-        frame.normals = normal_map(frame.screen, centres, is_smooth(shading));
-    }
-    if (options.mask) frame.mask = mask_map(centres);
-}
-
-// -- writing -----------------------------------------------------------------------------------
-
-Status write_color(const RenderOptions& options, const Frame& frame, const std::string& path) {
-    if (options.color->format == ImageFormat::png) return write_color_png(path, frame.color);
-    if (options.color->format == ImageFormat::npy) return write_npy(path, frame.color);
-    ExrLayers layers;
-    layers.color = &frame.color;
-    layers.depth = &frame.depth;
-    if (options.layers.normals) layers.normals = &frame.normals;
-    if (options.layers.ids) layers.objects = &frame.objects, layers.triangles = &frame.triangles;
-    return write_exr(path, layers);
-}
-
-Status write_depth(ImageFormat format, const Frame& frame, const std::string& path) {
-    const Camera& camera = frame.screen.camera();
-    if (format == ImageFormat::png) {
-        return write_depth_png(path, frame.depth, camera.near_plane, camera.far_plane);
-    }
-    if (format == ImageFormat::npy) return write_npy(path, frame.depth);
-    ExrLayers layers;
-    layers.depth = &frame.depth;
-    return write_exr(path, layers);
-}
-
-Status write_ids(ImageFormat format, const Frame& frame, const std::string& path) {
-    if (format == ImageFormat::png) return write_ids_png(path, frame.triangles);
-    if (format == ImageFormat::npy) return write_npy(path, frame.triangles);
-    ExrLayers layers;
-    layers.objects = &frame.objects;
-    layers.triangles = &frame.triangles;
-    return write_exr(path, layers);
-}
-
-Status write_normals(ImageFormat format, const Frame& frame, const std::string& path) {
-    if (format == ImageFormat::png) return write_normals_png(path, frame.normals);
-    if (format == ImageFormat::npy) return write_npy(path, frame.normals);
-    ExrLayers layers;
-    layers.normals = &frame.normals;
-    return write_exr(path, layers);
-}
-
-Status write_frame(const RenderOptions& options, const Frame& frame) {
-    OutputBatch batch;
-    if (options.color) {
-        batch.add(*options.color,
-                  [&](const std::string& path) { return write_color(options, frame, path); });
-    }
-    const auto add = [&](const std::optional<Output>& output, auto write) {
-        if (!output) return;
-        const ImageFormat format = output->format;
-        batch.add(*output, [&frame, format, write](const std::string& path) {
-            return write(format, frame, path);
-        });
-    };
-    add(options.depth, write_depth);
-    add(options.ids, write_ids);
-    add(options.normals, write_normals);
-    add(options.mask, [](ImageFormat format, const Frame& f, const std::string& path) {
-        return format == ImageFormat::png ? write_mask_png(path, f.mask) : write_npy(path, f.mask);
-    });
-    return batch.publish();
 }
 
 // -- what is reported --------------------------------------------------------------------------
@@ -374,7 +224,7 @@ Result<int> run(const Arguments& arguments) {
     times.shade = watch.lap();
 
     progress.stage("writing");
-    if (Status done = write_frame(options, frame); !done) return done.error();
+    if (Status done = write_frame(options, shading, frame); !done) return done.error();
     times.write = watch.lap();
     progress.clear();
     if (Status done = report(options, report_rows(options, shading, *scene, frame, times)); !done) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "sightline/image.hpp"
@@ -38,6 +39,12 @@ struct ShadeOptions {
 /// The bytes do not depend on the number of threads or on the machine.
 [[nodiscard]] ColorImage shade(const ScreenScene& screen, const Visibility& visibility,
                                const ShadeOptions& options);
+
+/// shade() and write_color_png() in one, with the same pixels but without the picture in memory:
+/// bands of rows are shaded, compressed in parallel and written in order. Errors as those of
+/// write_color_png().
+[[nodiscard]] Status write_shaded_png(const std::string& path, const ScreenScene& screen,
+                                      const Visibility& visibility, const ShadeOptions& options);
 
 // Maps of what is seen at the pixels' centres. Precondition: visibility.grid.per_axis == 1.
 

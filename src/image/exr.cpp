@@ -8,6 +8,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
+#include <ImfThreading.h>
 #include <fmt/core.h>
 #include <half.h>
 
@@ -77,8 +78,8 @@ Error exr_error(const std::string& path, std::string_view cause) {
 struct ExrWriter::State {
     State(AtomicFile target, std::uint32_t w, std::uint32_t h, const ExrChannels& channels)
         : stream(std::move(target)), width(w) {
-        // No threads of OpenEXR's own: they would outlive the call, and a fork.
-        output.emplace(stream, header_of(w, h, channels), 0);
+        // As many threads as the application has given to OpenEXR's pool (none unless it asks).
+        output.emplace(stream, header_of(w, h, channels), Imf::globalThreadCount());
     }
 
     /// The file's error when it has one, else OpenEXR's.

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "image/png_rows.hpp"
 #include "image/png_writer.hpp"
@@ -12,31 +11,30 @@
 namespace sightline {
 namespace {
 
-/// Rows are converted and handed over in blocks of about this many bytes.
-constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
-
-/// Writes an image row by row; convert(row of pixels, bytes of the row) makes the file's bytes.
+/// Writes an image; convert(row of pixels, bytes of the row) makes the file's bytes.
 template <class T, class Convert>
 Status write_png(const std::string& path, const Image<T>& image, PngLayout layout,
                  PngContent content, const Convert& convert) {
     Result<PngWriter> writer = PngWriter::create(path, image.width, image.height, layout, content);
     if (!writer) return writer.error();
     const std::size_t row_bytes = writer->bytes_per_row();
-    const auto block_rows = static_cast<std::uint32_t>(
-        std::clamp<std::size_t>(kBlockBytes / row_bytes, 1, image.height));
-    std::vector<std::uint8_t> bytes(block_rows * row_bytes);
-    for (std::uint32_t y = 0; y < image.height; y += block_rows) {
-        const std::uint32_t rows = std::min(block_rows, image.height - y);
-        for (std::uint32_t i = 0; i < rows; ++i) {
-            convert(image.row(y + i), bytes.data() + i * row_bytes);
+    const auto source = [&](std::uint32_t first, std::uint32_t count, std::uint8_t* out) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            convert(image.row(first + i), out + i * row_bytes);
         }
-        const Status written = writer->write_rows({bytes.data(), rows * row_bytes});
-        if (!written) return written;
-    }
+    };
+    if (Status written = writer->write_all(source, 0); !written) return written;
     return writer->finish();
 }
 
 }  // namespace
+
+std::array<std::uint8_t, 4> color_to_rgba8(glm::vec4 color) {
+    const float alpha = std::clamp(color.a, 0.0f, 1.0f);
+    const float factor = alpha > 0 ? 1.0f / alpha : 0.0f;
+    return {to_srgb8(color.r * factor), to_srgb8(color.g * factor), to_srgb8(color.b * factor),
+            static_cast<std::uint8_t>(alpha * 255.0f + 0.5f)};
+}
 
 void color_row_to_rgba8(std::span<const glm::vec4> row, std::uint8_t* out) {
     // Neighbours are often equal (the background, flat faces): convert such runs once.
@@ -45,10 +43,7 @@ void color_row_to_rgba8(std::span<const glm::vec4> row, std::uint8_t* out) {
     for (const glm::vec4& pixel : row) {
         if (pixel != last) {
             last = pixel;
-            const float alpha = std::clamp(pixel.a, 0.0f, 1.0f);
-            const float factor = alpha > 0 ? 1.0f / alpha : 0.0f;
-            bytes = {to_srgb8(pixel.r * factor), to_srgb8(pixel.g * factor),
-                     to_srgb8(pixel.b * factor), static_cast<std::uint8_t>(alpha * 255.0f + 0.5f)};
+            bytes = color_to_rgba8(pixel);
         }
         std::memcpy(out, bytes.data(), bytes.size());
         out += bytes.size();

@@ -2,6 +2,7 @@
 // mean is said at the write_*_png functions of sightline/image.hpp.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -9,6 +10,7 @@
 
 namespace sightline {
 
+[[nodiscard]] std::array<std::uint8_t, 4> color_to_rgba8(glm::vec4 color);
 void color_row_to_rgba8(std::span<const glm::vec4> row, std::uint8_t* out);
 void depth_row_to_grey16(std::span<const float> row, double near, double far, std::uint8_t* out);
 void normals_row_to_rgb8(std::span<const glm::vec3> row, std::uint8_t* out);

@@ -1,80 +1,108 @@
-// PNG files row by row, through libpng.
+// PNG files (PNG specification, second edition, 2003): the container around the bands.
 //
-// libpng reports an error by a long jump, which runs no destructors: it is called only inside
-// guarded(), with nothing on the stack that has one.
+// Written here and not by libpng, which compresses on one thread, byte by byte, and then takes
+// longer than all the rest of a rendering; docs/dependencies.md has the measurements. libpng reads
+// the files back in the tests.
 #include "image/png_writer.hpp"
 
 #include <fmt/core.h>
-#include <png.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_pipeline.h>
+#include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <cassert>
-#include <csetjmp>
 #include <utility>
+#include <vector>
 
 #include "image/atomic_file.hpp"
+#include "image/png_band.hpp"
+#include "math/arena.hpp"
 
 namespace sightline {
 namespace {
 
+constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+constexpr std::array<std::uint8_t, 2> kZlibHeader = {0x78, 0x01};  // a window of 32 KiB, fastest
+constexpr std::array<std::uint8_t, 1> kPerceptual = {0};           // the intent of sRGB
+/// PNG's own limit of a side, and ours of a row, which also bounds the chunk of a band.
+constexpr std::uint32_t kLongestSide = 0x7FFFFFFF;
+constexpr std::uint64_t kLongestRow = std::uint64_t{1} << 30;
+
 struct Format {
-    int color_type, bit_depth;
+    std::uint8_t color_type, bit_depth;
     std::size_t bytes_per_pixel;
 };
 
 Format format_of(PngLayout layout) {
     switch (layout) {
         case PngLayout::grey8:
-            return {PNG_COLOR_TYPE_GRAY, 8, 1};
+            return {0, 8, 1};
         case PngLayout::grey16:
-            return {PNG_COLOR_TYPE_GRAY, 16, 2};
+            return {0, 16, 2};
         case PngLayout::rgb8:
-            return {PNG_COLOR_TYPE_RGB, 8, 3};
+            return {2, 8, 3};
         case PngLayout::rgba8:
-            return {PNG_COLOR_TYPE_RGBA, 8, 4};
+            return {6, 8, 4};
     }
     return {};
 }
 
-/// Runs a function that calls libpng; false when libpng jumped out of it.
-template <class Function>
-bool guarded(png_structp png, const Function& function) {
-    if (setjmp(png_jmpbuf(png)) != 0) return false;
-    function();
-    return true;
+std::array<std::uint8_t, 4> big_endian(std::uint32_t n) {
+    return {static_cast<std::uint8_t>(n >> 24), static_cast<std::uint8_t>(n >> 16),
+            static_cast<std::uint8_t>(n >> 8), static_cast<std::uint8_t>(n)};
 }
 
 }  // namespace
 
 struct PngWriter::State {
     explicit State(AtomicFile target) : file(std::move(target)) {}
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    ~State() { png_destroy_write_struct(&png, &info); }
 
-    static void on_error(png_structp png, png_const_charp text) {
-        static_cast<State*>(png_get_error_ptr(png))->message = text;
-        png_longjmp(png, 1);
+    /// The first failure sticks to the file, which is asked for it in the end.
+    void put(std::span<const std::uint8_t> bytes) {
+        static_cast<void>(file.write(bytes.data(), bytes.size()));
     }
-    static void on_warning(png_structp, png_const_charp) {}
-    static void on_write(png_structp png, png_bytep data, std::size_t size) {
-        const bool written = static_cast<State*>(png_get_io_ptr(png))->file.write(data, size).ok();
-        if (!written) png_error(png, "write failed");
-    }
-    static void on_flush(png_structp) {}
 
-    /// The file's error when it has one, else libpng's.
-    [[nodiscard]] Error error() const {
-        if (const Status status = file.status(); !status) return status.error();
-        return {ErrorKind::bad_option,
-                fmt::format("cannot write '{}': libpng says '{}'; choose another size or format",
-                            file.path(), message)};
+    void write_chunk(std::string_view type, std::span<const std::uint8_t> data) {
+        const std::span name(reinterpret_cast<const std::uint8_t*>(type.data()), type.size());
+        uLong crc = crc32_z(0, name.data(), name.size());
+        if (!data.empty()) crc = crc32_z(crc, data.data(), data.size());  // 0 for a null pointer
+        put(big_endian(static_cast<std::uint32_t>(data.size())));
+        put(name);
+        put(data);
+        put(big_endian(static_cast<std::uint32_t>(crc)));
+    }
+
+    void write_head(const Format& format, PngContent content) {
+        put(kSignature);
+        std::array<std::uint8_t, 13> head{};
+        std::ranges::copy(big_endian(shape.width), head.begin());
+        std::ranges::copy(big_endian(shape.height), head.begin() + 4);
+        head[8] = format.bit_depth;
+        head[9] = format.color_type;
+        write_chunk("IHDR", head);
+        if (content == PngContent::color) write_chunk("sRGB", kPerceptual);
+        write_chunk("IDAT", kZlibHeader);
+    }
+
+    Status append(const PngBand& band) {
+        write_chunk("IDAT", band.data);
+        adler = static_cast<std::uint32_t>(
+            adler32_combine(adler, band.adler, static_cast<z_off_t>(band.decoded_size)));
+        ++bands_written;
+        return file.status();
+    }
+
+    Status encode_and_append(std::span<const std::uint8_t> rows) {
+        return append(encoder.encode(rows, shape));
     }
 
     AtomicFile file;
-    png_structp png = nullptr;
-    png_infop info = nullptr;
-    const char* message = "out of memory";
-    std::size_t bytes_per_row = 0;
+    PngShape shape;
+    std::uint32_t adler = 1, bands_written = 0;
+    std::vector<std::uint8_t> waiting;  // rows of a band that is not complete
+    PngBandEncoder encoder;
 };
 
 PngWriter::PngWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -82,50 +110,94 @@ PngWriter::PngWriter(PngWriter&&) noexcept = default;
 PngWriter& PngWriter::operator=(PngWriter&&) noexcept = default;
 PngWriter::~PngWriter() = default;
 
-std::size_t PngWriter::bytes_per_row() const { return state_->bytes_per_row; }
+std::size_t PngWriter::bytes_per_row() const { return state_->shape.bytes_per_row(); }
 
 Result<PngWriter> PngWriter::create(const std::string& path, std::uint32_t width,
                                     std::uint32_t height, PngLayout layout, PngContent content) {
     Result<AtomicFile> file = AtomicFile::create(path, AtomicFile::Access::sequential);
     if (!file) return file.error();
-    auto state = std::make_unique<State>(std::move(*file));
-    State& s = *state;
-    s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, State::on_error, State::on_warning);
-    if (s.png == nullptr) return s.error();
     const Format format = format_of(layout);
-    const bool ok = guarded(s.png, [&] {
-        s.info = png_create_info_struct(s.png);
-        png_set_write_fn(s.png, &s, State::on_write, State::on_flush);
-        png_set_IHDR(s.png, s.info, width, height, format.bit_depth, format.color_type,
-                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-        if (content == PngContent::color) png_set_sRGB(s.png, s.info, PNG_sRGB_INTENT_PERCEPTUAL);
-        // Rendered pictures change little from row to row: of all filters at levels 1 to 3, this
-        // pair gave the shortest time and very nearly the smallest files.
-        png_set_compression_level(s.png, 1);
-        png_set_filter(s.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
-        png_set_compression_buffer_size(s.png, std::size_t{1} << 16);
-        png_write_info(s.png, s.info);
-    });
-    if (!ok) return s.error();
-    s.bytes_per_row = std::size_t{width} * format.bytes_per_pixel;
+    if (width == 0 || height == 0 || width > kLongestSide || height > kLongestSide ||
+        std::uint64_t{width} * format.bytes_per_pixel > kLongestRow) {
+        return Error{ErrorKind::bad_option,
+                     fmt::format("cannot write '{}': a PNG has no room for {} x {} pixels; choose "
+                                 "another size or format",
+                                 path, width, height)};
+    }
+    auto state = std::make_unique<State>(std::move(*file));
+    state->shape = {width, height, format.bytes_per_pixel};
+    state->write_head(format, content);
+    if (const Status status = state->file.status(); !status) return status.error();
     return PngWriter(std::move(state));
 }
 
 Status PngWriter::write_rows(std::span<const std::uint8_t> rows) {
     State& s = *state_;
-    assert(rows.size() % s.bytes_per_row == 0);
-    const bool ok = guarded(s.png, [&] {
-        for (std::size_t at = 0; at < rows.size(); at += s.bytes_per_row) {
-            png_write_row(s.png, rows.data() + at);
+    const std::size_t row_bytes = s.shape.bytes_per_row();
+    assert(rows.size() % row_bytes == 0);
+    while (!rows.empty() && s.bands_written < s.shape.bands()) {
+        const std::size_t wanted = s.shape.rows_of_band(s.bands_written) * row_bytes;
+        const std::size_t taken = std::min(rows.size(), wanted - s.waiting.size());
+        if (taken == wanted) {
+            if (Status done = s.encode_and_append(rows.first(taken)); !done) return done;
+        } else {
+            s.waiting.insert(s.waiting.end(), rows.begin(),
+                             rows.begin() + static_cast<std::ptrdiff_t>(taken));
+            if (s.waiting.size() == wanted) {
+                if (Status done = s.encode_and_append(s.waiting); !done) return done;
+                s.waiting.clear();
+            }
         }
+        rows = rows.subspan(taken);
+    }
+    return s.file.status();
+}
+
+Status PngWriter::write_all(const PngRowSource& source, int threads) {
+    State& s = *state_;
+    assert(s.bands_written == 0 && s.waiting.empty());
+    struct Scratch {
+        std::vector<std::uint8_t> rows;
+        PngBandEncoder encoder;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratches;
+    std::uint32_t next = 0;
+    const auto number = [&](tbb::flow_control& control) {
+        if (next == s.shape.bands() || !s.file.status()) control.stop();
+        return next++;
+    };
+    const auto encode = [&](std::uint32_t band) {
+        Scratch& scratch = scratches.local();
+        const std::uint32_t count = s.shape.rows_of_band(band);
+        scratch.rows.resize(count * s.shape.bytes_per_row());
+        source(band * s.shape.rows_per_band(), count, scratch.rows.data());
+        return std::make_shared<PngBand>(scratch.encoder.encode(scratch.rows, s.shape));
+    };
+    const auto append = [&](const std::shared_ptr<PngBand>& band) {
+        static_cast<void>(s.append(*band));  // a failure stops the numbers
+    };
+    in_arena(threads, [&] {
+        const auto in_flight =
+            2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+        using tbb::filter_mode;
+        tbb::parallel_pipeline(
+            in_flight, tbb::make_filter<void, std::uint32_t>(filter_mode::serial_in_order, number) &
+                           tbb::make_filter<std::uint32_t, std::shared_ptr<PngBand>>(
+                               filter_mode::parallel, encode) &
+                           tbb::make_filter<std::shared_ptr<PngBand>, void>(
+                               filter_mode::serial_in_order, append));
     });
-    if (!ok) return s.error();
-    return success();
+    return s.file.status();
 }
 
 Status PngWriter::finish() {
     State& s = *state_;
-    if (!guarded(s.png, [&] { png_write_end(s.png, s.info); })) return s.error();
+    assert(s.bands_written == s.shape.bands());
+    std::array<std::uint8_t, kLastBlock.size() + 4> end{};
+    std::ranges::copy(kLastBlock, end.begin());
+    std::ranges::copy(big_endian(s.adler), end.begin() + kLastBlock.size());
+    s.write_chunk("IDAT", end);
+    s.write_chunk("IEND", {});
     return s.file.commit();
 }
 

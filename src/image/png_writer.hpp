@@ -1,8 +1,9 @@
-// PNG files, row by row.
+// PNG files, row by row or band by band.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,9 +24,13 @@ enum class PngContent {
     data,   ///< numbers: no statement on colour
 };
 
-/// Writes one PNG as its rows come, from the top; nothing but a buffer stands in memory. The file
-/// appears under its name when finish() succeeds. The bytes depend on the pixels only, not on how
-/// they are cut into calls.
+/// Makes the bytes of rows first .. first + count - 1, in `out`. Called by several threads at once.
+using PngRowSource =
+    std::function<void(std::uint32_t first, std::uint32_t count, std::uint8_t* out)>;
+
+/// Writes one PNG as its rows come, from the top; nothing but a few bands of them (2^18 bytes or
+/// one row each) stands in memory. The file appears under its name when finish() succeeds. The
+/// bytes depend on the pixels only, neither on how they are cut into calls nor on the threads.
 class PngWriter {
 public:
     /// Errors: io for the file; bad_option for a picture without pixels or beyond PNG's limits.
@@ -37,8 +42,11 @@ public:
     ~PngWriter();
 
     [[nodiscard]] std::size_t bytes_per_row() const;
-    /// Appends whole rows: `rows` has a multiple of bytes_per_row() bytes.
+    /// Appends whole rows: `rows` has a multiple of bytes_per_row() bytes. On this thread.
     Status write_rows(std::span<const std::uint8_t> rows);
+    /// Writes the whole picture: its bands are made and compressed in parallel (threads: 0 = all
+    /// cores) and written in order. Precondition: no rows are written yet.
+    Status write_all(const PngRowSource& source, int threads);
     /// Precondition: all rows are written.
     Status finish();
 

@@ -155,6 +155,39 @@ TEST(Png, BytesDependOnThePixelsOnly) {
     EXPECT_EQ(read_bytes(folder.file("c.png")), read_bytes(folder.file("d.png")));
 }
 
+TEST(Png, BytesDoNotDependOnCallsOrThreads) {
+    const TemporaryFolder folder;
+    const std::uint32_t width = 1'000, height = 301;  // several bands, the last one incomplete
+    std::vector<std::uint8_t> rows(std::size_t{width} * 4 * height);
+    std::mt19937 random(9);
+    for (std::uint8_t& byte : rows) byte = static_cast<std::uint8_t>(random() % 5);
+    const auto create = [&](const char* name) {
+        return PngWriter::create(folder.file(name), width, height, PngLayout::rgba8,
+                                 PngContent::data);
+    };
+    auto by_row = create("0.png");
+    ASSERT_TRUE(by_row.ok());
+    const std::size_t row_bytes = by_row->bytes_per_row();
+    for (std::size_t at = 0; at < rows.size(); at += row_bytes) {
+        ASSERT_TRUE(by_row->write_rows({rows.data() + at, row_bytes}).ok());
+    }
+    ASSERT_TRUE(by_row->finish().ok());
+    EXPECT_EQ(decode(folder.file("0.png")).bytes, rows);
+
+    auto at_once = create("1.png");
+    ASSERT_TRUE(at_once.ok() && at_once->write_rows(rows).ok() && at_once->finish().ok());
+    EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("1.png")));
+    for (const int threads : {1, 2, 8}) {
+        auto writer = create("2.png");
+        ASSERT_TRUE(writer.ok());
+        const auto source = [&](std::uint32_t first, std::uint32_t count, std::uint8_t* out) {
+            std::memcpy(out, rows.data() + first * row_bytes, count * row_bytes);
+        };
+        ASSERT_TRUE(writer->write_all(source, threads).ok() && writer->finish().ok());
+        EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("2.png")));
+    }
+}
+
 TEST(Png, FailuresAreValuesAndLeaveNothing) {
     const TemporaryFolder folder;
     const Status empty = write_color_png(folder.file("a.png"), ColorImage{});
@@ -167,6 +200,10 @@ TEST(Png, FailuresAreValuesAndLeaveNothing) {
     ASSERT_FALSE(full.ok());
     EXPECT_EQ(full.error().kind, ErrorKind::io);
     EXPECT_NE(full.error().message.find("No space left"), std::string::npos);
+    EXPECT_FALSE(
+        PngWriter::create(folder.file("a.png"), 0x2000'0000, 1, PngLayout::rgba8, PngContent::data)
+            .ok());
+    EXPECT_EQ(folder.count(), 0);
 }
 
 TEST(Png, LongestRowsAndColumnsWork) {

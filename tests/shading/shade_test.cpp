@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <set>
 
+#include "image/temporary_folder.hpp"
 #include "shading/id_colors.hpp"
 #include "shading/view_of.hpp"
 
@@ -164,6 +166,28 @@ TEST(Shade, BytesAreTheSameOnEveryMachine) {
     EXPECT_EQ(hash, 7995895578870085337u);
 }
 
+TEST(Shade, WrittenBandByBandIsThePictureWrittenAtOnce) {
+    const test::TemporaryFolder folder;
+    SceneBuilder builder = many_triangles();
+    for (const std::uint32_t samples : {1u, 2u}) {
+        // High enough for several bands.
+        const View view = view_of(builder.scene, {}, {700, 230}, samples);
+        for (const Shading shading : kAll) {
+            const glm::vec4 background{0.2f, 0.1f, 0, 0.4f};
+            ASSERT_TRUE(
+                write_color_png(folder.file("a.png"), view.shade(shading, background)).ok());
+            for (const int threads : {1, 8}) {
+                ASSERT_TRUE(write_shaded_png(folder.file("b.png"), view.screen, view.visibility,
+                                             {shading, background, threads})
+                                .ok());
+                EXPECT_EQ(test::read_bytes(folder.file("a.png")),
+                          test::read_bytes(folder.file("b.png")))
+                    << name_of(shading) << ' ' << threads;
+            }
+        }
+    }
+}
+
 TEST(Maps, SayWhatIsSeen) {
     SceneBuilder builder = left_half();
     builder.scene.objects.push_back(builder.scene.objects[0]);
@@ -176,7 +200,7 @@ TEST(Maps, SayWhatIsSeen) {
     const IdImage triangles = triangle_map(view.visibility);
     const IdImage objects = object_map(view.screen, view.visibility);
     const MaskImage mask = mask_map(view.visibility);
-    EXPECT_EQ(triangles.pixels, view.visibility.ids);
+    EXPECT_TRUE(std::ranges::equal(triangles.pixels, view.visibility.ids));
     std::set<std::uint32_t> seen;
     for (std::uint32_t y = 0; y < 32; ++y) {
         for (std::uint32_t x = 0; x < 32; ++x) {
