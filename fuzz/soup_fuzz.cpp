@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "scene/finish.hpp"
 #include "scene/load/build.hpp"
 #include "scene/load/soup.hpp"
 #include "scene_check.hpp"
@@ -20,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     Scene scene = builder.take();
-    finish_scene(scene);
+    finish_joined_scene(scene);
     fuzz::check(scene);
     make_normals(scene, 30);
     fuzz::check(scene);

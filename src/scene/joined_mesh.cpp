@@ -1,5 +1,6 @@
 #include "scene/joined_mesh.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <glm/geometric.hpp>
@@ -22,8 +23,10 @@ std::uint64_t hash(const glm::dvec3& p) {
 
 }  // namespace
 
-PositionJoiner::PositionJoiner(std::vector<glm::dvec3>& points)
-    : points_(points), base_(points.size()), slots_(kFirstSlots, kNone) {}
+PositionJoiner::PositionJoiner(std::vector<glm::dvec3>& points, std::size_t expected)
+    : points_(points),
+      base_(points.size()),
+      slots_(std::bit_ceil(std::max(kFirstSlots, 2 * expected)), kNone) {}
 
 std::size_t PositionJoiner::slot_of(const glm::dvec3& position) const {
     const std::size_t mask = slots_.size() - 1;
@@ -51,12 +54,17 @@ void PositionJoiner::grow() {
     }
 }
 
-ObjectJoiner::ObjectJoiner(const Scene& scene)
-    : scene_(scene), joined_(scene.positions.size(), kNone) {}
+ObjectJoiner::ObjectJoiner(const Scene& scene, bool joined)
+    : scene_(scene), is_joined_(joined), joined_(scene.positions.size(), kNone) {}
 
 JoinedMesh ObjectJoiner::join(const Object& object) {
     JoinedMesh mesh;
     PositionJoiner joiner(mesh.points);
+    const auto add = [&](const glm::dvec3& position) {
+        if (!is_joined_) return joiner.add(position);
+        mesh.points.push_back(position);
+        return static_cast<std::uint32_t>(mesh.points.size() - 1);
+    };
     mesh.triangles.reserve(object.triangle_count);
     const auto end = object.first_triangle + object.triangle_count;
     for (std::uint32_t t = object.first_triangle; t < end; ++t) {
@@ -64,7 +72,7 @@ JoinedMesh ObjectJoiner::join(const Object& object) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t position = scene_.triangles[t][k];
             std::uint32_t& joined = joined_[position];
-            if (joined == kNone) joined = joiner.add(scene_.positions[position]);
+            if (joined == kNone) joined = add(scene_.positions[position]);
             corners[k] = joined;
         }
         mesh.triangles.push_back(corners);

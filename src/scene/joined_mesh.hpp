@@ -16,7 +16,8 @@ namespace sightline {
 class PositionJoiner {
 public:
     /// `points` must outlive the joiner; what it holds already takes no part in the joining.
-    explicit PositionJoiner(std::vector<glm::dvec3>& points);
+    /// Quickest when no more than `expected` positions are added.
+    explicit PositionJoiner(std::vector<glm::dvec3>& points, std::size_t expected = 0);
 
     /// Index in `points` of this position, appended when new. Amortised O(1).
     /// Precondition: finite; fewer than 2^32 - 1 points.
@@ -41,11 +42,13 @@ struct JoinedMesh {
 /// thread-safe.
 class ObjectJoiner {
 public:
-    explicit ObjectJoiner(const Scene& scene);
+    /// `joined`: equal positions of an object share an index in the scene already.
+    explicit ObjectJoiner(const Scene& scene, bool joined = false);
     [[nodiscard]] JoinedMesh join(const Object& object);
 
 private:
     const Scene& scene_;
+    bool is_joined_;
     std::vector<std::uint32_t> joined_;  ///< of each scene position, or kNone between two calls
 };
 

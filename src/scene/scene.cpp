@@ -2,13 +2,16 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cassert>
 #include <glm/common.hpp>
+#include <limits>
 #include <numeric>
 
+#include "scene/finish.hpp"
 #include "scene/joined_mesh.hpp"
 #include "scene/sheets.hpp"
 #include "scene/topology.hpp"
@@ -18,29 +21,39 @@ namespace {
 
 using Range = tbb::blocked_range<std::uint32_t>;
 
-Box united(const Box& a, const Box& b) {
-    if (a.empty()) return b;
-    if (b.empty()) return a;
-    return {glm::min(a.lo, b.lo), glm::max(a.hi, b.hi)};
-}
-
-Box bounds_of(const Scene& scene) {
-    Box box = tbb::parallel_reduce(
-        Range(0, scene.triangle_count()), Box{},
-        [&](const Range& range, Box partial) {
-            for (std::uint32_t t = range.begin(); t != range.end(); ++t) {
-                for (int k = 0; k < 3; ++k) {
-                    const glm::dvec3& p = scene.positions[scene.triangles[t][k]];
-                    partial = united(partial, {p, p});
-                }
+/// The box around `count` points, on all cores.
+template <class Point>
+Box bounds_of(std::uint32_t count, const Point& point) {
+    struct Extent {
+        glm::dvec3 lo{std::numeric_limits<double>::infinity()};
+        glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
+    };
+    if (count == 0) return {};
+    const Extent extent = tbb::parallel_reduce(
+        Range(0, count, 4096), Extent{},
+        [&](const Range& range, Extent partial) {
+            for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
+                const glm::dvec3& p = point(i);
+                partial = {glm::min(partial.lo, p), glm::max(partial.hi, p)};
             }
             return partial;
         },
-        united);
-    if (!box.empty()) {
-        // -0 becomes +0: which zero a minimum keeps depends on the order.
-        box.lo += 0.0;
-        box.hi += 0.0;
+        [](const Extent& a, const Extent& b) {
+            return Extent{glm::min(a.lo, b.lo), glm::max(a.hi, b.hi)};
+        });
+    // -0 becomes +0: which zero a minimum keeps depends on the order.
+    return {extent.lo + 0.0, extent.hi + 0.0};
+}
+
+Box bounds_of_triangles(const Scene& scene) {
+    Box box;
+    for (int k = 0; k < 3; ++k) {
+        const Box corners =
+            bounds_of(scene.triangle_count(), [&](std::uint32_t t) -> const glm::dvec3& {
+                return scene.positions[scene.triangles[t][k]];
+            });
+        if (corners.empty()) return {};
+        box = k == 0 ? corners : Box{glm::min(box.lo, corners.lo), glm::max(box.hi, corners.hi)};
     }
     return box;
 }
@@ -59,6 +72,16 @@ void find_degenerate(Scene& scene) {
     if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
 }
 
+/// What is derived, after the bounds.
+void derive(Scene& scene, bool joined) {
+    find_degenerate(scene);
+    scene.counts.polygons =
+        std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
+                        [](std::uint64_t sum, const Object& o) { return sum + o.polygon_count; });
+    // Neither looks at what the other finds.
+    tbb::parallel_invoke([&] { find_closed_objects(scene, joined); }, [&] { build_sheets(scene); });
+}
+
 }  // namespace
 
 std::uint32_t Scene::object_of(std::uint32_t triangle) const {
@@ -69,13 +92,15 @@ std::uint32_t Scene::object_of(std::uint32_t triangle) const {
 }
 
 void finish_scene(Scene& scene) {
-    scene.bounds = bounds_of(scene);
-    find_degenerate(scene);
-    scene.counts.polygons =
-        std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
-                        [](std::uint64_t sum, const Object& o) { return sum + o.polygon_count; });
-    find_closed_objects(scene);
-    build_sheets(scene);
+    scene.bounds = bounds_of_triangles(scene);
+    derive(scene, false);
+}
+
+void finish_joined_scene(Scene& scene) {
+    scene.bounds =
+        bounds_of(static_cast<std::uint32_t>(scene.positions.size()),
+                  [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
+    derive(scene, true);
 }
 
 }  // namespace sightline

@@ -45,7 +45,9 @@ struct Edge {
 
 class ClosednessTest {
 public:
-    explicit ClosednessTest(const JoinedMesh& mesh) : mesh_(mesh), parts_(mesh.triangles.size()) {}
+    /// `dropped`: one byte a triangle, or nothing when none is dropped.
+    ClosednessTest(const JoinedMesh& mesh, std::span<const std::uint8_t> dropped)
+        : mesh_(mesh), dropped_(dropped), parts_(mesh.triangles.size()) {}
 
     bool closed() { return gather_edges() && pair_edges() && volumes_positive(); }
 
@@ -53,11 +55,14 @@ private:
     [[nodiscard]] const glm::dvec3& point(std::uint32_t t, int k) const {
         return mesh_.points[mesh_.triangles[t][k]];
     }
+    [[nodiscard]] bool is_dropped(std::uint32_t t) const {
+        return !dropped_.empty() && dropped_[t] != 0;
+    }
     /// Calls body(face, from, to) for each side of each drawn face while it answers true.
     template <class Body>
     bool each_side(const Body& body) const {
         for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-            if (dropped_[t] != 0) continue;
+            if (is_dropped(t)) continue;
             const Corners& c = mesh_.triangles[t];
             for (int k = 0; k < 3; ++k) {
                 if (!body(t, c[k], c[(k + 1) % 3])) return false;
@@ -70,8 +75,8 @@ private:
     bool volumes_positive();
 
     const JoinedMesh& mesh_;
+    std::span<const std::uint8_t> dropped_;
     FaceSets parts_;
-    std::vector<std::uint8_t> dropped_;
     std::vector<std::uint64_t> first_;  ///< edges of vertex v: first_[v] .. first_[v + 1] - 1
     std::vector<Edge> edges_;
 };
@@ -79,10 +84,6 @@ private:
 /// Groups the forward edges by their lower vertex, each group in order of the higher one. False
 /// when one stands twice or the backward ones are not as many.
 bool ClosednessTest::gather_edges() {
-    dropped_.resize(mesh_.triangles.size());
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-        dropped_[t] = is_degenerate(point(t, 0), point(t, 1), point(t, 2)) ? 1 : 0;
-    }
     first_.assign(mesh_.points.size() + 1, 0);
     std::uint64_t forward = 0, backward = 0;
     each_side([&](std::uint32_t, std::uint32_t from, std::uint32_t to) {
@@ -130,7 +131,7 @@ bool ClosednessTest::volumes_positive() {
     std::vector<Sum> sums(mesh_.triangles.size());
     const glm::dvec3 origin = mesh_.points[0];
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-        if (dropped_[t] != 0) continue;
+        if (is_dropped(t)) continue;
         const glm::dvec3 a = point(t, 0) - origin, b = point(t, 1) - origin,
                          c = point(t, 2) - origin;
         Sum& sum = sums[parts_.root(t)];
@@ -140,19 +141,36 @@ bool ClosednessTest::volumes_positive() {
     const double relative_error =
         (static_cast<double>(mesh_.triangles.size()) + 8) * std::numeric_limits<double>::epsilon();
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-        if (dropped_[t] != 0 || parts_.root(t) != t) continue;
+        if (is_dropped(t) || parts_.root(t) != t) continue;
         if (!(sums[t].volume > relative_error * sums[t].size)) return false;
     }
     return true;
 }
 
+/// `dropped` has one byte a triangle of the scene, or nothing when none is dropped.
+void find_closed(Scene& scene, bool joined, std::span<const std::uint8_t> dropped) {
+    ObjectJoiner joiner(scene, joined);
+    for (Object& object : scene.objects) {
+        const auto mine = dropped.empty()
+                              ? dropped
+                              : dropped.subspan(object.first_triangle, object.triangle_count);
+        object.closed = ClosednessTest(joiner.join(object), mine).closed();
+    }
+}
+
 }  // namespace
 
 void find_closed_objects(Scene& scene) {
-    ObjectJoiner joiner(scene);
-    for (Object& object : scene.objects) {
-        object.closed = ClosednessTest(joiner.join(object)).closed();
-    }
+    std::vector<std::uint8_t> dropped(scene.triangles.size());
+    std::ranges::transform(scene.triangles, dropped.begin(), [&](const Corners& c) {
+        const auto& p = scene.positions;
+        return is_degenerate(p[c.x], p[c.y], p[c.z]) ? std::uint8_t{1} : std::uint8_t{0};
+    });
+    find_closed(scene, false, dropped);
+}
+
+void find_closed_objects(Scene& scene, bool joined) {
+    find_closed(scene, joined, scene.degenerate);
 }
 
 }  // namespace sightline

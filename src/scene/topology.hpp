@@ -10,4 +10,8 @@ namespace sightline {
 /// case, O(n) on meshes.
 void find_closed_objects(Scene& scene);
 
+/// The same where Scene::degenerate says which triangles are dropped. With `joined`, equal
+/// positions of an object must share an index.
+void find_closed_objects(Scene& scene, bool joined);
+
 }  // namespace sightline

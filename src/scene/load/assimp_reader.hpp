@@ -17,7 +17,7 @@ struct Source {
     std::string name;                  ///< in messages
     std::string path;                  ///< of a regular file; "" when the model is in memory
     std::string format;                ///< lower case
-    std::span<const std::byte> bytes;  ///< when in memory
+    std::span<const std::byte> bytes;  ///< all of it; may be empty when there is a path
 };
 
 /// Extensions that assimp knows, lower case, sorted. Reads no file.

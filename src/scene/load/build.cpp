@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -55,6 +56,12 @@ const char* fault_of(const glm::dvec3& p) {
     return largest > kLargestCoordinate ? "a coordinate beyond 1e30" : nullptr;
 }
 
+/// Makes room for `size` elements at once, without losing geometric growth over many calls.
+template <class T>
+void reserve_more(std::vector<T>& vector, std::size_t size) {
+    if (size > vector.capacity()) vector.reserve(std::max(size, 2 * vector.capacity()));
+}
+
 }  // namespace
 
 struct SceneBuilder::Instance {
@@ -65,6 +72,12 @@ struct SceneBuilder::Instance {
     glm::dmat3 normal_matrix;
     bool mirrored;
     bool srgb;
+
+    /// Place in SoupMesh::corners of a polygon's corner k. A mirror turns fronts into backs, so
+    /// there the corners run backwards; the first stays the first.
+    [[nodiscard]] std::size_t corner(const Polygon& polygon, std::uint32_t k) const {
+        return polygon.first_corner + (mirrored && k > 0 ? polygon.size - k : k);
+    }
 };
 
 Status SceneBuilder::check_size(const Soup& soup, const Placement& placement) const {
@@ -158,18 +171,9 @@ Status SceneBuilder::append_object(const Instance& instance) {
     object.first_polygon = polygons_;
     object.polygon_count = static_cast<std::uint32_t>(mesh.polygon_sizes.size());
     object.material = material_of(mesh, instance.placement);
-    if (vertices_.size() < mesh.positions.size()) vertices_.resize(mesh.positions.size());
     const std::size_t normals_before = scene_.normals.size();
-    fill_attributes(instance);
-
-    PositionJoiner joiner(scene_.positions);
-    std::span<const std::uint32_t> rest = mesh.corners;
-    for (const std::uint32_t size : mesh.polygon_sizes) {
-        Status added = append_polygon(instance, rest.first(size), joiner);
-        if (!added) return added;
-        rest = rest.subspan(size);
-    }
-    for (const std::uint32_t vertex : mesh.corners) vertices_[vertex] = {};
+    fill_attributes(mesh);
+    if (Status added = append_polygons(instance); !added) return added;
     object.triangle_count = scene_.triangle_count() - object.first_triangle;
     object.has_file_normals = scene_.normals.size() > normals_before;
     if (!scene_.triangle_normals.empty()) {
@@ -183,25 +187,53 @@ Status SceneBuilder::append_object(const Instance& instance) {
 }
 
 /// Indices of attributes exist for every triangle as soon as one object has the attribute.
-void SceneBuilder::fill_attributes(const Instance& instance) {
-    if (!instance.mesh.normals.empty()) {
+void SceneBuilder::fill_attributes(const SoupMesh& mesh) {
+    if (!mesh.normals.empty()) {
         scene_.triangle_normals.resize(scene_.triangles.size(), Corners{kNone});
     }
-    if (!instance.mesh.colors.empty()) {
+    if (!mesh.colors.empty()) {
         scene_.triangle_colors.resize(scene_.triangles.size(), Corners{kNone});
     }
 }
 
-Status SceneBuilder::append_polygon(const Instance& instance,
-                                    std::span<const std::uint32_t> corners,
+Status SceneBuilder::append_polygons(const Instance& instance) {
+    const SoupMesh& mesh = instance.mesh;
+    placed_positions_.assign(mesh.positions.size(), kNone);
+    placed_normals_.assign(mesh.normals.size(), kNone);
+    placed_colors_.assign(mesh.colors.size(), kNone);
+    const std::size_t triangles =
+        scene_.triangles.size() + mesh.corners.size() - 2 * mesh.polygon_sizes.size();
+    reserve_more(scene_.triangles, triangles);
+    reserve_more(scene_.triangle_polygon, triangles);
+    reserve_more(scene_.polygon_edges, triangles);
+    PositionJoiner joiner(scene_.positions, std::min(mesh.positions.size(), mesh.corners.size()));
+    Polygon polygon{0, 0};
+    for (const std::uint32_t size : mesh.polygon_sizes) {
+        polygon.size = size;
+        if (Status added = append_polygon(instance, polygon, joiner); !added) return added;
+        polygon.first_corner += size;
+        ++polygons_;
+    }
+    return success();
+}
+
+Status SceneBuilder::append_polygon(const Instance& instance, const Polygon& polygon,
                                     PositionJoiner& joiner) {
-    polygon_.assign(corners.begin(), corners.end());
-    // A mirror turns fronts into backs; the first corner stays the first.
-    if (instance.mirrored) std::reverse(polygon_.begin() + 1, polygon_.end());
+    const auto vertex = [&](std::uint32_t k) {
+        return instance.mesh.corners[instance.corner(polygon, k)];
+    };
+    for (std::uint32_t k = 0; k < polygon.size; ++k) {
+        const std::uint32_t v = vertex(k);
+        if (v < placed_positions_.size() && placed_positions_[v] != kNone) continue;
+        if (Status placed = place_vertex(instance, v, joiner); !placed) return placed;
+    }
+    if (polygon.size == 3) {
+        append_triangle(instance, polygon, {0, 1, 2});
+        return success();
+    }
     polygon_positions_.clear();
-    for (const std::uint32_t vertex : polygon_) {
-        if (Status placed = place_vertex(instance, vertex, joiner); !placed) return placed;
-        polygon_positions_.push_back(scene_.positions[vertices_[vertex].position]);
+    for (std::uint32_t k = 0; k < polygon.size; ++k) {
+        polygon_positions_.push_back(scene_.positions[placed_positions_[vertex(k)]]);
     }
     const auto shape = triangulator_.triangulate(polygon_positions_, triangles_);
     if (shape == Triangulator::Shape::too_complex) {
@@ -209,14 +241,10 @@ Status SceneBuilder::append_polygon(const Instance& instance,
             ErrorKind::bad_input,
             fmt::format("{}: object '{}' has a polygon of {} corners that is too entangled "
                         "to triangulate; triangulate the model before",
-                        instance.placement.file, instance.name, polygon_.size())};
+                        instance.placement.file, instance.name, polygon.size)};
     }
     if (shape == Triangulator::Shape::concave) ++scene_.counts.concave_polygons;
-    for (const PolygonTriangle& triangle : triangles_) {
-        append_triangle(triangle, static_cast<std::uint32_t>(polygon_.size()));
-        append_attributes(instance, triangle);
-    }
-    ++polygons_;
+    for (const PolygonTriangle& triangle : triangles_) append_triangle(instance, polygon, triangle);
     return success();
 }
 
@@ -230,8 +258,6 @@ Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex
                         "damaged, export it again",
                         instance.placement.file, instance.name, vertex, mesh.positions.size())};
     }
-    Vertex& placed = vertices_[vertex];
-    if (placed.position != kNone) return success();
     const glm::dvec3 stored(mesh.positions[vertex]);
     const glm::dvec3 position(instance.transform * glm::dvec4(stored, 1.0));
     const char* fault = fault_of(stored);
@@ -241,44 +267,59 @@ Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex
                      fmt::format("{}: vertex {} of object '{}' has {}; repair or rescale the model",
                                  instance.placement.file, vertex, instance.name, fault)};
     }
-    placed.position = joiner.add(position);
-    if (!mesh.normals.empty()) {
-        const glm::dvec3 normal = instance.normal_matrix * glm::dvec3(mesh.normals[vertex]);
-        const double length = std::sqrt(glm::dot(normal, normal));
-        if (length > 0 && std::isfinite(length)) {
-            placed.normal = static_cast<std::uint32_t>(scene_.normals.size());
-            scene_.normals.emplace_back(normal / length);
-        }
-    }
-    if (!mesh.colors.empty()) {
-        const glm::vec4& color = mesh.colors[vertex];
-        placed.color = static_cast<std::uint32_t>(scene_.colors.size());
-        scene_.colors.emplace_back(linear_color(glm::vec3(color), instance.srgb),
-                                   linear_channel(color.w, false));
-    }
+    placed_positions_[vertex] = joiner.add(position);
     return success();
 }
 
-void SceneBuilder::append_triangle(const PolygonTriangle& triangle, std::uint32_t corners) {
-    const auto position = [&](std::size_t k) { return vertices_[polygon_[triangle[k]]].position; };
-    scene_.triangles.emplace_back(position(0), position(1), position(2));
-    scene_.triangle_polygon.push_back(polygons_);
-    scene_.polygon_edges.push_back(polygon_edge_bits(triangle, corners));
+/// Number of a unit normal in the scene; kNone for one without a length.
+std::uint32_t SceneBuilder::place_normal(const Instance& instance, std::uint32_t normal) {
+    if (normal >= placed_normals_.size()) return kNone;
+    std::uint32_t& placed = placed_normals_[normal];
+    if (placed != kNone) return placed;
+    const glm::dvec3 turned = instance.normal_matrix * glm::dvec3(instance.mesh.normals[normal]);
+    const double length = std::sqrt(glm::dot(turned, turned));
+    if (!(length > 0) || !std::isfinite(length)) return kNone;
+    placed = static_cast<std::uint32_t>(scene_.normals.size());
+    scene_.normals.emplace_back(turned / length);
+    return placed;
 }
 
-void SceneBuilder::append_attributes(const Instance& instance, const PolygonTriangle& triangle) {
-    const auto corner = [&](std::size_t k) -> const Vertex& {
-        return vertices_[polygon_[triangle[k]]];
-    };
-    if (!instance.mesh.normals.empty()) {
-        Corners normals(corner(0).normal, corner(1).normal, corner(2).normal);
+std::uint32_t SceneBuilder::place_color(const Instance& instance, std::uint32_t vertex) {
+    std::uint32_t& placed = placed_colors_[vertex];
+    if (placed != kNone) return placed;
+    const glm::vec4& color = instance.mesh.colors[vertex];
+    placed = static_cast<std::uint32_t>(scene_.colors.size());
+    scene_.colors.emplace_back(linear_color(glm::vec3(color), instance.srgb),
+                               linear_channel(color.w, false));
+    return placed;
+}
+
+void SceneBuilder::append_triangle(const Instance& instance, const Polygon& polygon,
+                                   const PolygonTriangle& triangle) {
+    const SoupMesh& mesh = instance.mesh;
+    std::array<std::size_t, 3> corner;  // in the mesh
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = instance.corner(polygon, triangle[k]);
+    const auto vertex = [&](std::size_t k) { return mesh.corners[corner[k]]; };
+    scene_.triangles.emplace_back(placed_positions_[vertex(0)], placed_positions_[vertex(1)],
+                                  placed_positions_[vertex(2)]);
+    scene_.triangle_polygon.push_back(polygons_);
+    scene_.polygon_edges.push_back(polygon_edge_bits(triangle, polygon.size));
+    if (!mesh.normals.empty()) {
+        const auto& of_corner = mesh.normal_corners.empty() ? mesh.corners : mesh.normal_corners;
+        Corners normals{};
+        for (int k = 0; k < 3; ++k) {
+            normals[k] = place_normal(instance, of_corner[corner[static_cast<std::size_t>(k)]]);
+        }
         // A triangle has normals at all its corners or at none.
         if (normals.x == kNone || normals.y == kNone || normals.z == kNone)
             normals = Corners{kNone};
         scene_.triangle_normals.push_back(normals);
     }
-    if (!instance.mesh.colors.empty()) {
-        scene_.triangle_colors.emplace_back(corner(0).color, corner(1).color, corner(2).color);
+    if (!mesh.colors.empty()) {
+        const std::uint32_t a = place_color(instance, vertex(0)),
+                            b = place_color(instance, vertex(1)),
+                            c = place_color(instance, vertex(2));
+        scene_.triangle_colors.emplace_back(a, b, c);
     }
 }
 

@@ -48,33 +48,36 @@ public:
     [[nodiscard]] Scene take() { return std::move(scene_); }
 
 private:
-    /// What a mesh's vertex has become in the object at hand.
-    struct Vertex {
-        std::uint32_t position = kNone, normal = kNone, color = kNone;
-    };
     struct Instance;  ///< an object while it is added
+    /// A polygon of the mesh at hand: some of SoupMesh::corners.
+    struct Polygon {
+        std::size_t first_corner;
+        std::uint32_t size;
+    };
 
     [[nodiscard]] Status check_size(const Soup& soup, const Placement& placement) const;
     void append_materials(const Soup& soup, const Placement& placement);
     [[nodiscard]] std::uint32_t material_of(const SoupMesh& mesh, const Placement& placement);
     [[nodiscard]] Status append_object(const Instance& instance);
-    [[nodiscard]] Status append_polygon(const Instance& instance,
-                                        std::span<const std::uint32_t> corners,
+    [[nodiscard]] Status append_polygons(const Instance& instance);
+    [[nodiscard]] Status append_polygon(const Instance& instance, const Polygon& polygon,
                                         PositionJoiner& joiner);
     [[nodiscard]] Status place_vertex(const Instance& instance, std::uint32_t vertex,
                                       PositionJoiner& joiner);
-    void append_triangle(const PolygonTriangle& triangle, std::uint32_t corners);
-    void append_attributes(const Instance& instance, const PolygonTriangle& triangle);
-    void fill_attributes(const Instance& instance);
+    [[nodiscard]] std::uint32_t place_normal(const Instance& instance, std::uint32_t normal);
+    [[nodiscard]] std::uint32_t place_color(const Instance& instance, std::uint32_t vertex);
+    void append_triangle(const Instance& instance, const Polygon& polygon,
+                         const PolygonTriangle& triangle);
+    void fill_attributes(const SoupMesh& mesh);
 
     Scene scene_;
     std::size_t memory_limit_;
     std::uint32_t polygons_ = 0;
     std::uint32_t first_material_ = 0;  ///< of the soup at hand
     Triangulator triangulator_;
+    // What the vertices and normals of the mesh at hand have become in the scene, or kNone.
+    std::vector<std::uint32_t> placed_positions_, placed_normals_, placed_colors_;
     // Scratch.
-    std::vector<Vertex> vertices_;        ///< of the mesh at hand; untouched ones are all kNone
-    std::vector<std::uint32_t> polygon_;  ///< vertices of the polygon at hand, in front-face order
     std::vector<glm::dvec3> polygon_positions_;
     std::vector<PolygonTriangle> triangles_;
 };

@@ -28,12 +28,15 @@ Error too_large(const std::string& name, std::size_t limit) {
                         name, limit >> 20)};
 }
 
-/// Appends up to `size` bytes of what is left of a file.
-Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::size_t size) {
+/// Reads up to `size` bytes of what is left of a file; there are probably `expected` ones.
+Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::size_t size,
+                                          std::size_t expected = 0) {
     std::vector<std::byte> bytes;
+    bytes.reserve(std::min(size, expected + 1));  // one more, to see the end
     while (bytes.size() < size) {
         const std::size_t before = bytes.size();
-        bytes.resize(before + std::min(kChunk, size - before));
+        const std::size_t room = bytes.capacity() - before;
+        bytes.resize(before + std::min({kChunk, size - before, room > 0 ? room : kChunk}));
         ssize_t got = 0;
         do got = read(fd, bytes.data() + before, bytes.size() - before);
         while (got < 0 && errno == EINTR);
@@ -46,8 +49,9 @@ Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::
 
 }  // namespace
 
-Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, std::size_t limit) {
-    Result<std::vector<std::byte>> bytes = read_up_to(fd, name, limit + 1);
+Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, std::size_t limit,
+                                               std::size_t expected) {
+    Result<std::vector<std::byte>> bytes = read_up_to(fd, name, limit + 1, expected);
     if (bytes && bytes->size() > limit) return too_large(name, limit);
     return bytes;
 }
@@ -63,8 +67,8 @@ Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
                      fmt::format("{}: it is a folder; name a model file in it", path)};
     }
     file.regular_ = S_ISREG(info.st_mode);
-    if (file.regular_ && static_cast<std::size_t>(info.st_size) > limit)
-        return too_large(path, limit);
+    if (file.regular_) file.size_ = static_cast<std::size_t>(info.st_size);
+    if (file.size_ > limit) return too_large(path, limit);
     return file;
 }
 
@@ -72,14 +76,15 @@ InputFile::InputFile(InputFile&& other) noexcept
     : fd_(std::exchange(other.fd_, -1)),
       path_(std::move(other.path_)),
       limit_(other.limit_),
-      regular_(other.regular_) {}
+      regular_(other.regular_),
+      size_(other.size_) {}
 
 InputFile::~InputFile() {
     if (fd_ >= 0) close(fd_);
 }
 
 Result<std::vector<std::byte>> InputFile::read_all() const {
-    return read_descriptor(fd_, path_, limit_);
+    return read_descriptor(fd_, path_, limit_, size_);
 }
 
 Result<std::vector<std::byte>> InputFile::read_beginning(std::size_t size) const {

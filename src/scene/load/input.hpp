@@ -10,9 +10,10 @@
 namespace sightline::load {
 
 /// Everything up to the end of an open file; bad_input when there is more than `limit` bytes, io
-/// when the system refuses.
+/// when the system refuses. Quickest when there are as many as `expected`.
 [[nodiscard]] Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name,
-                                                             std::size_t limit);
+                                                             std::size_t limit,
+                                                             std::size_t expected = 0);
 
 /// A file open for reading. Movable; closes itself.
 class InputFile {
@@ -37,6 +38,7 @@ private:
     std::string path_;
     std::size_t limit_;
     bool regular_ = false;
+    std::size_t size_ = 0;  ///< when it was opened, of a regular file
 };
 
 }  // namespace sightline::load

@@ -14,11 +14,12 @@
 #include <string_view>
 #include <variant>
 
+#include "scene/finish.hpp"
 #include "scene/load/assimp_reader.hpp"
 #include "scene/load/build.hpp"
 #include "scene/load/contained.hpp"
 #include "scene/load/input.hpp"
-#include "scene/load/ply_header.hpp"
+#include "scene/load/reader.hpp"
 #include "scene/load/scene_file.hpp"
 #include "scene/load/text.hpp"
 
@@ -50,7 +51,17 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Texts in UTF-16 are left to assimp.
+bool is_utf16(std::string_view bytes) {
+    return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+}
+
 Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
+    if (has_own_reader(source.format) && !is_utf16(text_of(source.bytes))) {
+        const ReadContext context(source.name, source.path, options.time_limit_seconds,
+                                  options.memory_limit_bytes);
+        return read_own_format(source.format, text_of(source.bytes), context);
+    }
     const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};
     const Result<MappedBytes> mapped =
         run_contained([&] { return read_in_child(source); }, limits, source.name);
@@ -96,8 +107,7 @@ public:
 private:
     [[nodiscard]] Status add_file(const std::string& path, const std::string& format,
                                   Placement placement);
-    [[nodiscard]] Status add_source(const Source& source, std::string_view beginning,
-                                    const Placement& placement);
+    [[nodiscard]] Status add_source(const Source& source, const Placement& placement);
     [[nodiscard]] Status add_scene(std::string_view text, const std::string& name,
                                    const std::filesystem::path& folder);
 
@@ -134,38 +144,30 @@ Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& na
                          const std::string& format) {
     if (bytes.empty()) return bad_input(fmt::format("{}: it is empty; give it a model", name));
     if (format == "json") return add_scene(text_of(bytes), name, {});
-    return add_source({name, "", format, bytes}, text_of(bytes), placement_of(name));
+    return add_source({name, "", format, bytes}, placement_of(name));
 }
 
 Status Loader::add_file(const std::string& path, const std::string& format, Placement placement) {
     Result<InputFile> file = InputFile::open(path, options_.file_limit_bytes);
     if (!file) return file.error();
     const bool is_scene = format == "json";
-    // What is no regular file (a pipe) can be read only once, and from its beginning.
-    if (is_scene || !file->is_regular()) {
-        const Result<std::vector<std::byte>> bytes = file->read_all();
-        if (!bytes) return bytes.error();
-        if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
-        if (is_scene) {
-            return add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
-        }
-        return add_source({path, "", format, *bytes}, text_of(*bytes), placement);
+    // assimp reads regular files itself. What is none (a pipe) can be read only once.
+    const bool whole = is_scene || has_own_reader(format) || !file->is_regular();
+    const Result<std::vector<std::byte>> bytes = whole ? file->read_all() : file->read_beginning(1);
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
+    if (is_scene) {
+        return add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
     }
-    const Result<std::vector<std::byte>> beginning = file->read_beginning(kPlyHeaderBytes);
-    if (!beginning) return beginning.error();
-    if (beginning->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
-    return add_source({path, path, format, {}}, text_of(*beginning), placement);
+    Source source{path, file->is_regular() ? path : "", format, {}};
+    if (whole) source.bytes = *bytes;
+    return add_source(source, placement);
 }
 
-Status Loader::add_source(const Source& source, std::string_view beginning,
-                          const Placement& placement) {
-    if (!std::ranges::binary_search(assimp_extensions(), source.format)) {
+Status Loader::add_source(const Source& source, const Placement& placement) {
+    if (!has_own_reader(source.format) &&
+        !std::ranges::binary_search(assimp_extensions(), source.format)) {
         return unknown_format(source.name, source.format);
-    }
-    if (source.format == "ply") {
-        if (const std::optional<std::string> problem = ply_problem(beginning)) {
-            return bad_input(fmt::format("{}: {}", source.name, *problem));
-        }
     }
     const Result<Soup> soup = read_soup(source, options_);
     if (!soup) return soup.error();
@@ -198,7 +200,7 @@ Result<Scene> Loader::finish(const std::string& name) {
     Scene scene = builder_.take();
     scene.lights = std::move(lights_);
     scene.camera = camera_;
-    finish_scene(scene);
+    finish_joined_scene(scene);
     if (scene.bounds.lo == scene.bounds.hi) {
         const glm::dvec3& p = scene.bounds.lo;
         return bad_input(

@@ -1,17 +1,43 @@
-// What a PLY file announces, checked before assimp reads it.
+// The header of a PLY file: what elements follow, of which properties, in which form.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "scene/load/reader.hpp"
 
 namespace sightline::load {
 
-/// Length of a file's beginning that is enough for ply_problem().
-inline constexpr std::size_t kPlyHeaderBytes = std::size_t{1} << 16;
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Why a PLY file that begins like this can't be read ("cause; way out"), or nothing. assimp reads
-/// triangle strips silently as one polygon.
-[[nodiscard]] std::optional<std::string> ply_problem(std::string_view beginning);
+/// Bytes of a value in a binary file.
+[[nodiscard]] std::size_t size_of(PlyType type);
+
+struct PlyProperty {
+    std::string name;
+    PlyType type;
+    std::optional<PlyType> count_type;  ///< of a list's length; none: a single value
+};
+
+struct PlyElement {
+    std::string name;
+    std::uint64_t count = 0;  ///< as stated: may be absurd
+    std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+    enum class Format { ascii, binary_little_endian, binary_big_endian };
+    Format format = Format::ascii;
+    std::vector<PlyElement> elements;
+    std::size_t size = 0;  ///< of the header, in bytes
+};
+
+/// Errors: no PLY file, or a header that is cut off or can't be understood.
+[[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view bytes,
+                                                 const ReadContext& context);
 
 }  // namespace sightline::load

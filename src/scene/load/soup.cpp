@@ -8,7 +8,7 @@
 namespace sightline::load {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31504f534c535f5full;  // changes with the layout
+constexpr std::uint64_t kMagic = 0x32504f534c535f5full;  // changes with the layout
 
 class Writer {
 public:
@@ -108,6 +108,7 @@ void put(Writer& writer, const SoupMesh& mesh) {
     writer.put_all(mesh.colors);
     writer.put_all(mesh.polygon_sizes);
     writer.put_all(mesh.corners);
+    writer.put_all(mesh.normal_corners);
 }
 
 SoupMesh get_mesh(Reader& reader, std::size_t materials) {
@@ -119,8 +120,16 @@ SoupMesh get_mesh(Reader& reader, std::size_t materials) {
     mesh.colors = reader.get_all<glm::vec4>();
     mesh.polygon_sizes = reader.get_all<std::uint32_t>();
     mesh.corners = reader.get_all<std::uint32_t>();
+    mesh.normal_corners = reader.get_all<std::uint32_t>();
     reader.require(mesh.material == kNone || mesh.material < materials);
-    reader.require(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+    const std::size_t normals = mesh.normals.size();
+    if (mesh.normal_corners.empty()) {
+        reader.require(normals == 0 || normals == mesh.positions.size());
+    } else {
+        reader.require(mesh.normal_corners.size() == mesh.corners.size());
+        reader.require(std::ranges::all_of(
+            mesh.normal_corners, [&](auto index) { return index < normals || index == kNone; }));
+    }
     reader.require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
     reader.require(std::ranges::all_of(mesh.polygon_sizes, [](auto size) { return size >= 3; }));
     reader.require(std::accumulate(mesh.polygon_sizes.begin(), mesh.polygon_sizes.end(),
@@ -145,7 +154,7 @@ SoupObject get_object(Reader& reader, std::size_t meshes) {
 
 // Bytes that the smallest thing of each kind takes: bounds what a count may ask for.
 constexpr std::size_t kLeastMaterial = 8 + sizeof(glm::vec3) + 3 * sizeof(float);
-constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 5 * 8;
+constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 6 * 8;
 constexpr std::size_t kLeastObject = 8 + sizeof(std::uint32_t) + sizeof(glm::dmat4);
 
 }  // namespace

@@ -23,10 +23,11 @@ struct SoupMesh {
     std::string name;
     std::uint32_t material = kNone;  ///< index into Soup::materials, or kNone
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;            ///< one a position, or empty
-    std::vector<glm::vec4> colors;             ///< one a position, or empty
-    std::vector<std::uint32_t> polygon_sizes;  ///< number of corners of each polygon, >= 3
-    std::vector<std::uint32_t> corners;        ///< the polygons' vertices, one after another
+    std::vector<glm::vec3> normals;             ///< one a position unless normal_corners says which
+    std::vector<glm::vec4> colors;              ///< one a position, or empty
+    std::vector<std::uint32_t> polygon_sizes;   ///< number of corners of each polygon, >= 3
+    std::vector<std::uint32_t> corners;         ///< the polygons' vertices, one after another
+    std::vector<std::uint32_t> normal_corners;  ///< normal of each corner (kNone: none), or empty
 };
 
 /// A mesh at a node.

@@ -1,0 +1,6 @@
+// The reader of OBJ files, in this process.
+#include "reader_check.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    return sightline::fuzz::check_reader("obj", data, size);
+}

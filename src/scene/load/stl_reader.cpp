@@ -1,0 +1,288 @@
+// Both kinds are read in pieces side by side: binary files by facets, ascii files cut before lines
+// that begin with "facet", each piece on its own.
+#include "scene/load/stl_reader.hpp"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/load/scan.hpp"
+
+namespace sightline::load {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary STL is copied as it is");
+
+constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50, kFacetFloatBytes = 48;
+constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
+constexpr std::size_t kMostFacets = 0xFFFFFFFEu / 3;  // their corners are counted with 32 bits
+
+struct Solid {
+    std::size_t polygon;    ///< number of polygons before it
+    std::string_view name;  ///< in the text
+};
+
+struct Fault {
+    const char* where;
+    std::string what;
+};
+
+/// A piece of an ascii file. Polygons have vertices of their own and one normal each.
+struct Chunk {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<std::uint32_t> polygon_sizes;
+    std::vector<Solid> solids;
+    std::uint64_t ignored = 0;
+    std::optional<Fault> fault;
+};
+
+class ChunkParser {
+public:
+    explicit ChunkParser(std::string_view text)
+        : p_(text.data()), end_(text.data() + text.size()) {}
+
+    Chunk parse() {
+        for (skip(); p_ < end_ && !chunk_.fault; skip()) parse_statement();
+        if (facet_ && !chunk_.fault) fail("a facet that does not end");
+        return std::move(chunk_);
+    }
+
+private:
+    void skip() {
+        while (p_ < end_ && (is_blank(*p_) || is_line_end(*p_))) ++p_;
+    }
+    void fail(const char* what) { chunk_.fault = Fault{facet_ ? facet_start_ : p_, what}; }
+    /// Three numbers; false when they are not there.
+    bool scan(glm::vec3& numbers) {
+        for (int axis = 0; axis < 3; ++axis) {
+            skip();
+            const char* const end = p_ < end_ ? scan_float(p_, numbers[axis]) : nullptr;
+            if (end == nullptr || !(is_blank(*end) || is_line_end(*end))) return false;
+            p_ = end;
+        }
+        return true;
+    }
+    void parse_statement();
+    void begin_facet();
+    void end_facet();
+
+    const char* p_;
+    const char* end_;
+    Chunk chunk_;
+    bool facet_ = false;
+    const char* facet_start_ = nullptr;
+    std::size_t facet_corners_ = 0;
+};
+
+void ChunkParser::parse_statement() {
+    if (starts_with_word(p_, "vertex")) {
+        if (!facet_) return fail("a vertex outside a facet");
+        p_ += 6;
+        glm::vec3 position;
+        if (!scan(position)) return fail("a facet with a vertex that is not three numbers");
+        chunk_.positions.push_back(position);
+        ++facet_corners_;
+    } else if (starts_with_word(p_, "facet")) {
+        begin_facet();
+    } else if (starts_with_word(p_, "endfacet")) {
+        end_facet();
+        p_ += 8;
+    } else if (starts_with_word(p_, "solid")) {
+        if (facet_) return fail("a facet that does not end");
+        chunk_.solids.push_back({chunk_.polygon_sizes.size(), rest_of_line(p_ + 5)});
+        p_ = skip_to_line_end(p_);
+    } else if (starts_with_word(p_, "endsolid")) {
+        p_ = skip_to_line_end(p_);
+    } else {
+        p_ = skip_word(p_);  // outer loop, endloop, and what nobody knows
+    }
+}
+
+void ChunkParser::begin_facet() {
+    if (facet_) return fail("a facet that does not end");
+    facet_ = true;
+    facet_start_ = p_;
+    facet_corners_ = 0;
+    p_ += 5;
+    glm::vec3 normal(0);
+    skip();
+    if (p_ < end_ && starts_with_word(p_, "normal")) {
+        p_ += 6;
+        if (!scan(normal)) return fail("a facet with a normal that is not three numbers");
+    }
+    chunk_.normals.push_back(normal);
+}
+
+void ChunkParser::end_facet() {
+    if (!facet_) return fail("an endfacet without a facet");
+    facet_ = false;
+    if (facet_corners_ >= 3) {
+        chunk_.polygon_sizes.push_back(static_cast<std::uint32_t>(facet_corners_));
+        return;
+    }
+    ++chunk_.ignored;
+    chunk_.normals.pop_back();
+    chunk_.positions.resize(chunk_.positions.size() - facet_corners_);
+}
+
+/// Cuts before lines that begin with "facet".
+std::vector<std::string_view> cut(std::string_view text) {
+    std::vector<std::string_view> pieces;
+    const char* const last = text.data() + text.size();
+    while (!text.empty()) {
+        const char* p = text.data() + std::min(kChunkBytes, text.size());
+        while (p < last) {
+            p = skip_to_line_end(p) + 1;
+            if (p < last && starts_with_word(skip_blanks(p), "facet")) break;
+        }
+        const auto size = static_cast<std::size_t>(p - text.data());
+        pieces.push_back(text.substr(0, size));
+        text.remove_prefix(size);
+    }
+    return pieces;
+}
+
+/// Appends polygons first .. end - 1 of a chunk, whose positions begin at `position`.
+void append(const Chunk& chunk, std::size_t first, std::size_t end, std::size_t& position,
+            SoupMesh& mesh) {
+    for (std::size_t polygon = first; polygon < end; ++polygon) {
+        const std::uint32_t size = chunk.polygon_sizes[polygon];
+        mesh.polygon_sizes.push_back(size);
+        const auto normal = static_cast<std::uint32_t>(mesh.normals.size());
+        mesh.normals.push_back(chunk.normals[polygon]);
+        for (std::uint32_t k = 0; k < size; ++k) {
+            mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.normal_corners.push_back(normal);
+            mesh.positions.push_back(chunk.positions[position++]);
+        }
+    }
+}
+
+void append_object(Soup& soup, SoupMesh& mesh) {
+    if (mesh.polygon_sizes.empty()) return;
+    const auto number = static_cast<std::uint32_t>(soup.meshes.size());
+    soup.objects.push_back({mesh.name, number, glm::dmat4(1.0)});
+    soup.meshes.push_back(std::move(mesh));
+}
+
+Soup join(std::vector<Chunk>& chunks) {
+    Soup soup;
+    SoupMesh mesh;
+    for (Chunk& chunk : chunks) {
+        std::size_t polygon = 0, position = 0;
+        for (const Solid& solid : chunk.solids) {
+            append(chunk, polygon, solid.polygon, position, mesh);
+            polygon = solid.polygon;
+            append_object(soup, mesh);
+            mesh = {};
+            mesh.name = solid.name;
+        }
+        append(chunk, polygon, chunk.polygon_sizes.size(), position, mesh);
+        soup.ignored_primitives += chunk.ignored;
+        chunk = {};
+    }
+    append_object(soup, mesh);
+    return soup;
+}
+
+Result<Soup> read_ascii(std::string_view text, const ReadContext& context) {
+    const std::vector<std::string_view> pieces = cut(text);
+    std::vector<Chunk> chunks(pieces.size());
+    std::atomic<std::uint64_t> memory{0};
+    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+        if (!context.check(memory)) return;
+        Chunk& chunk = chunks[i] = ChunkParser(pieces[i]).parse();
+        memory += chunk.positions.capacity() * sizeof(glm::vec3) +
+                  chunk.normals.capacity() * (sizeof(glm::vec3) + sizeof(std::uint32_t)) +
+                  chunk.solids.capacity() * sizeof(Solid);
+    });
+    if (Status within_limits = context.check(memory); !within_limits) return within_limits.error();
+    std::size_t corners = 0;
+    for (const Chunk& chunk : chunks) {
+        if (chunk.fault) {
+            return context.at_line(text, static_cast<std::size_t>(chunk.fault->where - text.data()),
+                                   chunk.fault->what);
+        }
+        corners += chunk.positions.size();
+    }
+    if (corners >= kNone) return context.unreadable("stl", "more than 1,431,655,764 facets");
+    return join(chunks);
+}
+
+Result<Soup> read_binary(std::string_view bytes, std::uint32_t facets, const ReadContext& context) {
+    const std::size_t complete = (bytes.size() - kHeaderBytes) / kFacetBytes;
+    if (facets > complete) {
+        return context.unreadable("stl",
+                                  fmt::format("it ends after {} of {} facets", complete, facets));
+    }
+    if (facets > kMostFacets) return context.unreadable("stl", "more than 1,431,655,764 facets");
+    constexpr std::uint64_t kMemoryPerFacet = 4 * sizeof(glm::vec3) + 7 * sizeof(std::uint32_t);
+    if (Status fits = context.check(facets * kMemoryPerFacet); !fits) return fits.error();
+    Soup soup;
+    if (facets == 0) return soup;
+    SoupMesh& mesh = soup.meshes.emplace_back();
+    mesh.positions.resize(std::size_t{3} * facets);
+    mesh.normals.resize(facets);
+    mesh.polygon_sizes.assign(facets, 3);
+    mesh.corners.resize(std::size_t{3} * facets);
+    mesh.normal_corners.resize(std::size_t{3} * facets);
+    const char* const data = bytes.data() + kHeaderBytes;
+    using Range = tbb::blocked_range<std::uint32_t>;
+    tbb::parallel_for(Range(0, facets, 4096), [&](const Range& range) {
+        for (std::uint32_t f = range.begin(); f != range.end(); ++f) {
+            std::array<glm::vec3, 4> vectors;  // the normal, then the corners
+            static_assert(sizeof vectors == kFacetFloatBytes);
+            std::memcpy(vectors.data(), data + kFacetBytes * f, kFacetFloatBytes);
+            mesh.normals[f] = vectors[0];
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t corner = 3 * f + k;
+                mesh.positions[corner] = vectors[k + 1];
+                mesh.corners[corner] = corner;
+                mesh.normal_corners[corner] = f;
+            }
+        }
+    });
+    soup.objects.push_back({"", 0, glm::dmat4(1.0)});
+    return soup;
+}
+
+/// Begins with "solid", and then there is text: many binary files begin with "solid" as well.
+bool looks_like_text(std::string_view bytes) {
+    constexpr std::size_t kLooked = 512;
+    const std::string beginning = std::string(bytes.substr(0, kLooked)) + '\n';
+    const char* p = beginning.data();
+    const char* const end = p + beginning.size() - 1;
+    while (p < end && (is_blank(*p) || is_line_end(*p))) ++p;
+    return starts_with_word(p, "solid") && std::all_of(p, end, [](char c) {
+               return static_cast<unsigned char>(c) >= 0x20 || is_blank(c) || is_line_end(c);
+           });
+}
+
+}  // namespace
+
+Result<Soup> read_stl(std::string_view bytes, const ReadContext& context) {
+    std::uint32_t facets = 0;
+    const bool has_header = bytes.size() >= kHeaderBytes;
+    if (has_header)
+        std::memcpy(&facets, bytes.data() + kHeaderBytes - sizeof facets, sizeof facets);
+    const bool exact =
+        has_header && bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{facets};
+    if (!exact && looks_like_text(bytes)) {
+        if (bytes.ends_with('\n')) return read_ascii(bytes, context);
+        return read_ascii(std::string(bytes) + '\n', context);
+    }
+    if (!has_header) return context.unreadable("stl", "it ends within its header of 84 bytes");
+    return read_binary(bytes, facets, context);
+}
+
+}  // namespace sightline::load
