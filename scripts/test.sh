@@ -4,15 +4,15 @@
 #   scripts/test.sh [--full]
 #
 # release     all tests, the installed library's consumers, and the same bytes from a scalar build
-# asan-ubsan  all tests once more under the address and undefined-behaviour sanitizers
-# fuzz        each libFuzzer target for a short while, from the seeds in fuzz/corpus
+# fuzz        all tests once more, built by clang with the address and undefined-behaviour
+#             sanitizers, and each libFuzzer target for a short while, from the seeds in fuzz/corpus
 # With --full also the heavy cases (SIGHTLINE_FULL=1), the thread sanitizer and longer fuzzing.
 #
 # The last line counts what ran: "N passed, N failed", also left in build/test-summary.txt.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
-fuzz_seconds=20
+fuzz_seconds=15
 full=no
 case ${1:-} in
     '') ;;
@@ -33,7 +33,12 @@ logs=build/test-logs
 rm -f build/test-summary.txt
 mkdir -p "$logs"
 
-# step TEXT LOG COMMAND...: runs a command quietly; its log is shown when it fails.
+# What a log says about a failure: its errors, or else its end.
+show_failure() {
+    grep -E -m 10 'error: |CMake Error|ERROR: |SUMMARY: ' "$1" || tail -n 30 "$1"
+}
+
+# step TEXT LOG COMMAND...: runs a command quietly; says what went wrong when it fails.
 step() {
     local text=$1 log=$logs/$2.log begin=$SECONDS
     shift 2
@@ -42,7 +47,7 @@ step() {
         echo "    done in $((SECONDS - begin)) s"
         return 0
     fi
-    tail -n 40 "$log"
+    show_failure "$log"
     echo "    failed; the whole log is in $log"
     failed=$((failed + 1))
     return 1
@@ -79,19 +84,24 @@ run_ctest() {
     failed=$((failed + bad))
 }
 
+# Each target is one case; as many run at a time as there are cores.
 run_fuzz() {
-    local target
-    for target in fuzz/*_fuzz.cpp; do
-        target=$(basename "$target" .cpp)
-        step "Fuzzing $target for $fuzz_seconds s" "$target" \
-            fuzz/run.sh "$fuzz_seconds" build/fuzz "$target" && passed=$((passed + 1))
+    local target targets
+    targets=$(cd fuzz && ls ./*_fuzz.cpp | sed 's|^./||; s|\.cpp$||')
+    echo "Fuzzing for $fuzz_seconds s each:" $targets
+    rm -f "$logs"/*_fuzz.ok
+    echo "$targets" | xargs -P "$(nproc)" -I{} sh -c \
+        'fuzz/run.sh "$1" build/fuzz {} >"$2/{}.log" 2>&1 && touch "$2/{}.ok"; true' \
+        run "$fuzz_seconds" "$logs"
+    for target in $targets; do
+        if [ -f "$logs/$target.ok" ]; then
+            passed=$((passed + 1))
+        else
+            echo "    $target failed; the whole log is in $logs/$target.log"
+            show_failure "$logs/$target.log"
+            failed=$((failed + 1))
+        fi
     done
-}
-
-sanitized() {
-    local preset=$1
-    step "Building the tests with sanitizers ($preset)" "build-$preset" \
-        configure_and_build "$preset" all && run_ctest "$preset"
 }
 
 scripts/install-deps.sh build test || exit 1
@@ -101,9 +111,16 @@ step "Building the scalar program" build-scalar \
 step "Building the program and the tests" build-release configure_and_build release all \
     -D SIGHTLINE_TESTS=ON -D SIGHTLINE_SCALAR_PROGRAM="$PWD/build/scalar/bin/sightline" &&
     run_ctest release
-sanitized asan-ubsan
-[ "$full" = no ] || sanitized tsan
-step "Building the fuzz targets" build-fuzz configure_and_build fuzz all && run_fuzz
+# The sanitized tests and the fuzz targets share one build of the library, which saves minutes.
+if step "Building the tests and the fuzz targets with sanitizers" build-fuzz \
+    configure_and_build fuzz all -D SIGHTLINE_TESTS=ON; then
+    run_ctest fuzz
+    run_fuzz
+fi
+if [ "$full" = yes ]; then
+    step "Building the tests with the thread sanitizer" build-tsan configure_and_build tsan all &&
+        run_ctest tsan
+fi
 
 minutes=$((SECONDS / 60))
 if [ "$failed" -eq 0 ]; then

@@ -16,15 +16,16 @@ struct LoadOptions {
     /// Format of standard input, or an override of the extension: "obj", "ply", ... "" = by
     /// extension.
     std::string format;
-    /// Limits for the process that parses a foreign file.
+    /// Limits on the parsing of a foreign file.
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;
     std::size_t file_limit_bytes = std::size_t{4} << 30;
 };
 
 /// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input
-/// and needs LoadOptions::format. Foreign formats are parsed in a child process with limits on time
-/// and memory, so that no file can bring the caller down.
+/// and needs LoadOptions::format. OBJ, STL and PLY are parsed by readers of our own, other foreign
+/// formats in a child process; all with limits on time and memory, so that no file can bring the
+/// caller down.
 /// Errors name the file, the cause and the way out. Not thread-safe against fork().
 [[nodiscard]] Result<Scene> load_scene(std::span<const std::string> paths,
                                        const LoadOptions& options = {});
