@@ -218,7 +218,8 @@ private:
 
     void collect_points(std::uint32_t t, std::vector<ScreenPoint>& points) const {
         if (some_outside_ && has_outside_corner(t)) {
-            const auto [begin, end] = std::ranges::equal_range(screen_.piece_ids_, t);
+            const auto [begin, end] =
+                std::equal_range(screen_.piece_ids_.begin(), screen_.piece_ids_.end(), t);
             for (auto id = begin; id != end; ++id) {
                 const Corners piece =
                     screen_.pieces_[static_cast<std::size_t>(id - screen_.piece_ids_.begin())];
