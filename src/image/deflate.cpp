@@ -142,7 +142,7 @@ struct Symbol {
 Symbol split(std::uint32_t value, int codes_bits) {
     const std::uint32_t first = 2u << codes_bits;
     if (value < first) return {static_cast<std::uint16_t>(value), 0, 0};
-    const int extra = std::bit_width(value) - 1 - codes_bits;
+    const int extra = static_cast<int>(std::bit_width(value)) - 1 - codes_bits;
     const std::uint32_t code = (static_cast<std::uint32_t>(extra) << codes_bits) + (value >> extra);
     return {static_cast<std::uint16_t>(code), static_cast<std::uint8_t>(extra),
             static_cast<std::uint16_t>(value & ((1u << extra) - 1))};

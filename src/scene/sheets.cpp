@@ -32,22 +32,16 @@ constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
 // How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
 // size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
 constexpr double kNormalTolerance = 0x1p-12;
-constexpr double kCell = 0x1p-9;  // 8 tolerances, so that a face rarely reaches two cells
-constexpr std::int64_t kCellBias = 1024;
-constexpr int kCellBits = 12;
+// Cells of 8 tolerances along the normal, so that a face rarely reaches two, and of 2 along the
+// offset, where parallel planes crowd.
+constexpr std::array<double, 4> kCell{0x1p-9, 0x1p-9, 0x1p-9, 0x1p-11};
+constexpr std::int64_t kCellBias = 4096;
+constexpr int kCellBits = 14;
 
 struct FacePlane {
     glm::dvec3 normal;  // unit
     double offset;      // of the plane from the scene's centre, along the normal
     double area2;       // doubled area
-};
-
-struct Entry {
-    std::uint64_t cell;
-    std::uint32_t triangle;
-    friend bool operator<(const Entry& a, const Entry& b) {
-        return std::tie(a.cell, a.triangle) < std::tie(b.cell, b.triangle);
-    }
 };
 
 template <class Body>
@@ -122,51 +116,41 @@ private:
         return key;
     }
 
-    [[nodiscard]] static std::int64_t cell_of(double coordinate) {
-        return static_cast<std::int64_t>(std::floor(coordinate / kCell));
+    [[nodiscard]] static std::int64_t cell_of(double coordinate, std::size_t axis) {
+        return static_cast<std::int64_t>(std::floor(coordinate / kCell[axis]));
     }
 
+    // A hash table of chains: the first face of each slot, and after each face the next one.
     void fill_cells() {
-        entries_.resize(planes_.size());
+        cells_.resize(planes_.size());
         parallel_faces(planes_.size(), [&](std::uint32_t t) {
             const FacePlane& plane = planes_[t];
             const auto at = coordinates(plane, heading(plane) < 0 ? -1.0 : 1.0);
             std::array<std::int64_t, 4> cell{};
-            std::transform(at.begin(), at.end(), cell.begin(), cell_of);
-            entries_[t] = {is_usable(t) ? pack(cell) : ~std::uint64_t{0}, t};
+            for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
+            cells_[t] = pack(cell);
         });
-        tbb::parallel_sort(entries_.begin(), entries_.end());
-        index_cells();
-    }
-
-    // An open-addressed table from a cell to its first entry.
-    void index_cells() {
         std::size_t size = 16;
-        while (size < 2 * entries_.size()) size *= 2;
-        table_.assign(size, kNone);
-        for (std::uint32_t i = 0; i < entries_.size(); ++i) {
-            if (i > 0 && entries_[i].cell == entries_[i - 1].cell) continue;
-            std::size_t slot = slot_of(entries_[i].cell);
-            while (table_[slot] != kNone) slot = (slot + 1) & (size - 1);
-            table_[slot] = i;
+        while (size < 2 * planes_.size()) size *= 2;
+        first_.assign(size, kNone);
+        next_.resize(planes_.size());
+        for (std::uint32_t t = 0; t < planes_.size(); ++t) {
+            if (!is_usable(t)) continue;
+            std::uint32_t& first = first_[slot_of(cells_[t])];
+            next_[t] = first;
+            first = t;
         }
     }
 
     [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
-        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (table_.size() - 1);
+        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (first_.size() - 1);
     }
 
     // Calls visit(triangle) for all in a cell until it answers true; returns whether it did.
     template <class Visit>
     bool any_in_cell(std::uint64_t cell, const Visit& visit) const {
-        for (std::size_t slot = slot_of(cell); table_[slot] != kNone;
-             slot = (slot + 1) & (table_.size() - 1)) {
-            std::uint32_t i = table_[slot];
-            if (entries_[i].cell != cell) continue;
-            for (; i < entries_.size() && entries_[i].cell == cell; ++i)
-                if (visit(entries_[i].triangle)) return true;
-            return false;
-        }
+        for (std::uint32_t t = first_[slot_of(cell)]; t != kNone; t = next_[t])
+            if (cells_[t] == cell && visit(t)) return true;
         return false;
     }
 
@@ -174,7 +158,7 @@ private:
     bool any_around(const std::array<double, 4>& at, const Visit& visit) const {
         std::array<std::array<std::int64_t, 2>, 4> sides;
         for (std::size_t k = 0; k < 4; ++k)
-            sides[k] = {cell_of(at[k] - kNormalTolerance), cell_of(at[k] + kNormalTolerance)};
+            sides[k] = {cell_of(at[k] - kNormalTolerance, k), cell_of(at[k] + kNormalTolerance, k)};
         for (std::size_t choice = 0; choice < 16; ++choice) {
             std::array<std::int64_t, 4> cell{};
             bool repeated = false;
@@ -318,8 +302,8 @@ private:
     glm::dvec3 centre_{};
     double radius_ = 0, tolerance_ = 0;
     std::vector<FacePlane> planes_;
-    std::vector<Entry> entries_;
-    std::vector<std::uint32_t> table_;
+    std::vector<std::uint64_t> cells_;
+    std::vector<std::uint32_t> first_, next_;
     std::uint32_t sheet_count_ = 0;
 };
 
