@@ -170,7 +170,7 @@ private:
         std::uint32_t previous = add_point(polygon[1]);
         for (std::size_t k = 2; k < polygon.size(); ++k) {
             const std::uint32_t corner = add_point(polygon[k]);
-            screen_.pieces_.push_back({first, previous, corner});
+            screen_.pieces_.emplace_back(first, previous, corner);
             screen_.piece_ids_.push_back(t);
             previous = corner;
         }

@@ -31,12 +31,14 @@ namespace {
 constexpr std::uint32_t kRefreshAfter = 48;
 
 // The greatest depth that the tile holds under each box.
-HWY_INLINE VF depth_behind(const Tile& tile, const Lanes& t) {
+HWY_INLINE VF depth_behind(const Tile& tile, const Lanes& t, M kept) {
     constexpr int kBits = Tile::kBlockBits;
     const VI c0 = hn::ShiftRight<kBits>(t.column0), r0 = hn::ShiftRight<kBits>(t.row0);
     const VI c1 = hn::ShiftRight<kBits>(hn::Add(t.column0, t.columns));
     const VI r1 = hn::ShiftRight<kBits>(hn::Add(t.row0, t.rows));
-    const M near_by = hn::And(hn::Lt(hn::Sub(c1, c0), set(2)), hn::Lt(hn::Sub(r1, r0), set(2)));
+    // The boxes of other lanes may lie anywhere.
+    const M adjacent = hn::And(hn::Lt(hn::Sub(c1, c0), set(2)), hn::Lt(hn::Sub(r1, r0), set(2)));
+    const M near_by = hn::And(kept, adjacent);
     const auto at = [&](VI c, VI r) {
         const VI block = hn::Add(hn::Mul(r, set(Tile::kBlocks)), c);
         return hn::GatherIndex(kF, tile.block_max, hn::IfThenElseZero(near_by, block));
@@ -54,7 +56,7 @@ HWY_INLINE Outcome judge_depth(const Tile& tile, const Lanes& t, int step_bits, 
     M hidden = hn::Ne(t.number, t.number);
     if (tile.knows_depth)
         hidden = hn::RebindMask(
-            kI, hn::Gt(hn::Sub(range.least, hn::Set(kF, kUncertain)), depth_behind(tile, t)));
+            kI, hn::Gt(hn::Sub(range.least, hn::Set(kF, kUncertain)), depth_behind(tile, t, kept)));
     const M usable = hn::And(kept, range.regular);
     return {hn::AndNot(hidden, usable), hn::AndNot(range.regular, kept), hn::And(hidden, usable)};
 }

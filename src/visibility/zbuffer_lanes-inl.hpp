@@ -33,14 +33,14 @@ using VF = hn::Vec<Floats>;
 using VD = hn::Vec<Doubles>;
 using M = hn::Mask<Ints>;
 
-constexpr Ints kI;
-constexpr Floats kF;
-constexpr Uints kU;
-constexpr Doubles kD;
-constexpr std::size_t kLanes = hn::MaxLanes(Ints());
+inline constexpr Ints kI;
+inline constexpr Floats kF;
+inline constexpr Uints kU;
+inline constexpr Doubles kD;
+inline constexpr std::size_t kLanes = hn::MaxLanes(Ints());
 
 /// Corners within this distance of each other: 32 bits hold their edge functions.
-constexpr std::int32_t kSmallExtent = 1 << 14;
+inline constexpr std::int32_t kSmallExtent = 1 << 14;
 
 HWY_INLINE VI set(std::int32_t value) { return hn::Set(kI, value); }
 

@@ -133,7 +133,7 @@ void expect_equal_to_ray_caster(const Scene& scene, Resolution resolution) {
     EXPECT_GT(covered, 1000u);
     EXPECT_EQ(far_from_edges, 0u);
     EXPECT_EQ(wrong_depths, 0u);
-    EXPECT_LT(differ, covered / 500);
+    EXPECT_LT(differ, covered / 50);  // more where triangles are smaller than pixels
 }
 
 TEST(RayCaster, AgreesOnASphere) {

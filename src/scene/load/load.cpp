@@ -106,7 +106,7 @@ public:
 
 private:
     [[nodiscard]] Status add_file(const std::string& path, const std::string& format,
-                                  Placement placement);
+                                  const Placement& placement);
     [[nodiscard]] Status add_source(const Source& source, const Placement& placement);
     [[nodiscard]] Status add_scene(std::string_view text, const std::string& name,
                                    const std::filesystem::path& folder);
@@ -147,7 +147,8 @@ Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& na
     return add_source({name, "", format, bytes}, placement_of(name));
 }
 
-Status Loader::add_file(const std::string& path, const std::string& format, Placement placement) {
+Status Loader::add_file(const std::string& path, const std::string& format,
+                        const Placement& placement) {
     Result<InputFile> file = InputFile::open(path, options_.file_limit_bytes);
     if (!file) return file.error();
     const bool is_scene = format == "json";
@@ -184,7 +185,7 @@ Status Loader::add_scene(std::string_view text, const std::string& name,
         placement.name = model.name;
         placement.transform = model.transform;
         placement.material = model.material;
-        Status added = add_file(path, extension_of(path), std::move(placement));
+        Status added = add_file(path, extension_of(path), placement);
         if (!added) return added;
     }
     lights_.insert(lights_.end(), scene->lights.begin(), scene->lights.end());
