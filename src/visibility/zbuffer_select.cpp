@@ -67,10 +67,11 @@ HWY_INLINE Boxes boxes_of(const Triangles& t, const GridUnits& grid, const Shift
     b.column1 = hn::Min(shift_right(hn::Add(x_max, down)), hn::Set(kI, grid.columns - 1));
     b.row1 = hn::Min(shift_right(hn::Add(y_max, down)), hn::Set(kI, grid.rows - 1));
     b.kept = hn::Not(hn::Or(hn::Gt(b.column0, b.column1), hn::Gt(b.row0, b.row1)));
-    // A box of one sample away from the borders spans less than two steps: decide it here.
-    const M narrow = hn::And(hn::Lt(hn::Sub(x_max, x_min), hn::Set(kI, 2 << grid.step_bits)),
-                             hn::Lt(hn::Sub(y_max, y_min), hn::Set(kI, 2 << grid.step_bits)));
-    const M single = hn::And(narrow, hn::And(hn::Eq(b.column0, b.column1), hn::Eq(b.row0, b.row1)));
+    // A box of one sample away from the borders spans less than three steps: decide it here.
+    b.narrow = hn::And(hn::Lt(hn::Sub(x_max, x_min), hn::Set(kI, 3 << grid.step_bits)),
+                       hn::Lt(hn::Sub(y_max, y_min), hn::Set(kI, 3 << grid.step_bits)));
+    const M single =
+        hn::And(b.narrow, hn::And(hn::Eq(b.column0, b.column1), hn::Eq(b.row0, b.row1)));
     if (!hn::AllFalse(kI, hn::And(b.kept, single))) {
         const V bits = hn::Set(kI, 1 << grid.step_bits), offset = hn::Set(kI, grid.offset);
         const V sx = hn::Add(hn::Mul(b.column0, bits), offset);
