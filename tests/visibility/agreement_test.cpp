@@ -76,6 +76,27 @@ TEST(Agreement, DeepScenesEqualBruteForce) {
     EXPECT_GT(hidden, 1000u);
 }
 
+// Most triangles of a fine mesh hold no sample or one or two: they have a path of their own, and
+// these scenes go through it.
+TEST(Agreement, FineMeshesEqualBruteForceByThePathOfTinyTriangles) {
+    for (const Resolution size : {Resolution{100, 75}, Resolution{160, 200}}) {
+        const Scene scene = sphere_scene(200, 300);
+        const Camera camera = must(make_camera({}, scene.bounds, size));
+        const ScreenScene screen = must(project(scene, camera, {Cull::none, 0}));
+        std::vector<Counter> counters;
+        ResolveOptions options;
+        options.counters = &counters;
+        const Visibility seen = run("zbuffer", screen, options);
+        std::uint64_t tiny = 0, covered = 0;
+        for (const Counter& c : counters)
+            if (c.name == "samples of tiny triangles") tiny += c.value;
+        for (const std::uint32_t id : seen.ids) covered += id != kNone;
+        EXPECT_GT(covered, 500u);
+        EXPECT_GT(tiny, covered);  // both sides of the sphere are drawn
+        EXPECT_EQ(count_differences(seen, run("brute", screen)), 0u);
+    }
+}
+
 TEST(Agreement, ThreadsDoNotChangeABit) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         const Scene scene = seed == 0 ? sphere_scene(60, 90) : hostile_scene(seed);
