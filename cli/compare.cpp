@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 
+#include "affordable.hpp"
 #include "errors.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
@@ -13,9 +14,6 @@
 namespace sightline::cli {
 namespace {
 
-/// An exhaustive algorithm runs by itself up to this many samples times triangles: some ten
-/// seconds on two cores. Beyond, it runs only when it is named.
-constexpr std::uint64_t kExhaustiveWork = std::uint64_t{1} << 38;
 constexpr std::array kDifferenceFormats = {ImageFormat::png};
 constexpr std::string_view kOracle = "brute";
 constexpr std::string_view kExactCounter = "exact comparisons";
@@ -53,12 +51,6 @@ Result<CompareOptions> read_options(const Arguments& arguments) {
     options.common = read_common(reader);
     if (reader.error()) return *reader.error();
     return options;
-}
-
-bool is_affordable(const Algorithm& algorithm, const ScreenScene& screen) {
-    const SampleGrid grid{screen.resolution(), 1};
-    return !algorithm.exhaustive ||
-           grid.count() * std::max<std::uint64_t>(screen.triangle_count(), 1) <= kExhaustiveWork;
 }
 
 /// The algorithms that get a row.

@@ -67,6 +67,18 @@ std::string to_json(const Value& value) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::optional<Value::Object> parse_flat_json(std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) return std::nullopt;
+    Value::Object object;
+    for (const auto& [key, value] : json.items()) {
+        if (value.is_string()) object.emplace_back(key, value.get<std::string>());
+        if (value.is_boolean()) object.emplace_back(key, value.get<bool>());
+        if (value.is_number()) object.emplace_back(key, value.get<double>());
+    }
+    return object;
+}
+
 Value milliseconds(double ms) { return std::round(ms * 1000) / 1000; }
 
 std::string to_table(const std::vector<Row>& rows) {

@@ -47,6 +47,10 @@ private:
 /// On one line, without the line's end. Bytes that are no UTF-8 are replaced.
 [[nodiscard]] std::string to_json(const Value& value);
 
+/// The text, numbers and flags at the top level of one JSON object; values that are lists or
+/// objects are left out. Nothing where the text is no JSON object.
+[[nodiscard]] std::optional<Value::Object> parse_flat_json(std::string_view text);
+
 /// A number of milliseconds, rounded to what can be measured.
 [[nodiscard]] Value milliseconds(double ms);
 

@@ -32,9 +32,19 @@ struct RepeatOptions {
 /// Error (bad_option): no copies, or more than kMaxGeneratedTriangles. O(n log n) of the result.
 [[nodiscard]] Result<Scene> repeat(const Scene& scene, const RepeatOptions& options);
 
-/// Triangles in a unit cube, of random place and direction and of such a size that about four lie
-/// behind each other. The same for the same arguments on every machine. The result is finished.
+/// Where random triangles stand, and how many of them behind one another.
+struct RandomBox {
+    double complexity = 4;     ///< mean number of triangles behind a point of the front face, > 0
+    glm::dvec3 size{1, 1, 1};  ///< from the origin; > 0
+};
+
+/// Equal equilateral triangles of random place and direction, wholly inside of a box. They shrink
+/// as their number grows, so that the depth complexity stays the same: seen along z their areas sum
+/// up to box.complexity times the front face (less only where they would not fit: no corner is
+/// farther than half the smallest side from its triangle's centre). The same for the same arguments
+/// on every machine. The result is finished.
 /// Error (bad_option): no triangles, or more than kMaxGeneratedTriangles. O(n log n).
-[[nodiscard]] Result<Scene> random_triangles(std::uint32_t count, std::uint32_t seed = 1);
+[[nodiscard]] Result<Scene> random_triangles(std::uint32_t count, std::uint32_t seed = 1,
+                                             const RandomBox& box = {});
 
 }  // namespace sightline

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,13 +34,20 @@ struct SampleGrid {
     [[nodiscard]] std::int32_t offset(int subpixel_bits) const { return step(subpixel_bits) / 2; }
 };
 
-/// What is seen at every sample of a grid: ids and depth, row by row from the top.
+/// What is seen at the samples of a grid: ids and depth, row by row from the top; of all rows, or of
+/// a band of a picture that is made in bands.
 struct Visibility {
     SampleGrid grid;
     AlignedVector<std::uint32_t> ids;  ///< of triangles; kNone where nothing is seen
     /// z of the winner in units of the depth grid, as stored_depth() gives it; infinity where
     /// nothing is seen. For lengths in the scene's unit see depth_map().
     AlignedVector<float> depth;
+    std::uint32_t first_row = 0;  ///< row of the grid with which ids and depth begin
+
+    /// Rows of samples that are held.
+    [[nodiscard]] std::uint32_t rows() const {
+        return static_cast<std::uint32_t>(ids.size() / grid.columns());
+    }
 };
 
 /// The depth of a plane at a point of the screen, in units of the depth grid: computed from the
@@ -67,7 +75,15 @@ enum class StepKind {
     tile_entered,      ///< work on a part of the picture begins (area)
     block_dismissed,   ///< a triangle is hidden in all of a block (triangle, area)
     sample_decided,    ///< a sample gets an owner (triangle; other = owner before; area = sample)
+    depths_compared,   ///< depths of two surfaces are compared (triangle, other; area)
     exact_comparison,  ///< the float filter could not decide between two (triangle, other)
+    edge_activated,    ///< an edge joins the active edge list (triangle; area: its column and row)
+    span_decided,      ///< a stretch of a row gets an owner (triangle; area)
+    span_split,        ///< two surfaces cross on a stretch of a row (triangle, other; area)
+    quadrant_split,    ///< a quadrant is divided into four (area)
+    quadrant_decided,  ///< all samples of a quadrant get an owner, or none (triangle; area)
+    quadrant_scanned,  ///< the only triangle of a quadrant is drawn over the background (triangle;
+                       ///< area)
 };
 
 struct Step {
@@ -93,6 +109,20 @@ struct ResolveOptions {
     std::vector<Counter>* counters = nullptr;
 };
 
+/// An answer that is made in bands of rows, on demand: what a picture needs that is too large to
+/// stand in memory. Refers to its ScreenScene.
+class RowSource {
+public:
+    virtual ~RowSource() = default;
+    /// Rows of samples in a band; the last band may have fewer.
+    [[nodiscard]] virtual std::uint32_t band_rows() const = 0;
+    /// Fills a band's rows. ids and depth hold them from the band's first row on. Any number of
+    /// threads may work on different bands.
+    virtual void resolve_band(std::uint32_t band, std::uint32_t* ids, float* depth) = 0;
+    /// Appends what was counted so far to the counters of the options.
+    virtual void report() = 0;
+};
+
 /// Where an algorithm decides (Sutherland, Sproull, Schumacker 1974).
 enum class Space { image, object, list_priority };
 
@@ -105,13 +135,23 @@ struct Algorithm {
     Space space = Space::image;
     bool exact = true;        ///< promises the canonical answer in every sample
     bool exhaustive = false;  ///< cost grows with samples times triangles: for small scenes
+    /// Exactly one of the two is set: an algorithm makes the whole picture, or any band of it.
     void (*resolve)(const ScreenScene&, const ResolveOptions&, Visibility&) = nullptr;
+    std::unique_ptr<RowSource> (*open_rows)(const ScreenScene&, const SampleGrid&,
+                                            const ResolveOptions&) = nullptr;
 };
 
 /// All algorithms; the first exact one that is not exhaustive is the default.
 [[nodiscard]] std::span<const Algorithm> algorithms();
 [[nodiscard]] const Algorithm* find_algorithm(std::string_view name);
 [[nodiscard]] const Algorithm& default_algorithm();
+
+/// The rows of an algorithm that makes them in bands (Algorithm::open_rows is set), for pictures of
+/// up to 65,536 samples a side. options.observer and .counters must outlive the source.
+/// Error (bad_option): samples_per_axis as for resolve(); the algorithm needs the whole picture.
+[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm,
+                                                           const ScreenScene& screen,
+                                                           const ResolveOptions& options);
 
 /// Runs an algorithm into `out`, whose memory is reused when it has the right size.
 /// Error (bad_option): samples_per_axis is not a power of two up to 16, or the grid is larger than

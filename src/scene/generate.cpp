@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 #include <unordered_map>
@@ -158,10 +159,48 @@ public:
         const double x = next(), y = next(), z = next();
         return {x, y, z};
     }
+    /// A unit vector, every direction alike: a point of the unit ball, pushed out to the sphere.
+    glm::dvec3 direction() {
+        while (true) {
+            const glm::dvec3 p = 2.0 * point() - 1.0;
+            const double square = p.x * p.x + p.y * p.y + p.z * p.z;
+            if (square > 0x1p-20 && square <= 1) return p / std::sqrt(square);
+        }
+    }
+    /// An equilateral triangle about the origin with its corners on the unit sphere, turned at
+    /// random.
+    std::array<glm::dvec3, 3> triangle() {
+        constexpr double kHalfRoot3 = 0.86602540378443864676;
+        const glm::dvec3 normal = direction();
+        glm::dvec3 across;
+        double square = 0;
+        do {  // until it is not along the normal
+            across = glm::cross(normal, direction());
+            square = glm::dot(across, across);
+        } while (square < 0x1p-20);
+        const glm::dvec3 first = across / std::sqrt(square);
+        const glm::dvec3 side = kHalfRoot3 * glm::cross(normal, first);
+        return {first, -0.5 * first + side, -0.5 * first - side};
+    }
 
 private:
     std::uint64_t state_;
 };
+
+/// The circumradius with which the triangles that `seed` makes cover the front of the box
+/// `complexity` times over.
+double common_radius(std::uint32_t count, std::uint32_t seed, const RandomBox& box) {
+    Random random(seed);
+    double area = 0;  // of all on the xy plane, with radius 1
+    for (std::uint32_t t = 0; t < count; ++t) {
+        const auto corners = random.triangle();
+        const glm::dvec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
+        area += 0.5 * std::abs(u.x * v.y - u.y * v.x);
+        random.point();  // where it will stand
+    }
+    const double wanted = std::sqrt(box.complexity * box.size.x * box.size.y / area);
+    return std::min(wanted, 0.5 * std::min({box.size.x, box.size.y, box.size.z}));
+}
 
 }  // namespace
 
@@ -199,18 +238,23 @@ Result<Scene> repeat(const Scene& scene, const RepeatOptions& options) {
     return result;
 }
 
-Result<Scene> random_triangles(std::uint32_t count, std::uint32_t seed) {
+Result<Scene> random_triangles(std::uint32_t count, std::uint32_t seed, const RandomBox& box) {
     if (count == 0) return Error{ErrorKind::bad_option, "a scene needs at least 1 triangle"};
     if (count > kMaxGeneratedTriangles) return too_large("generating so many");
+    const double radius = common_radius(count, seed, box);
     Scene scene;
+    scene.positions.reserve(std::size_t{3} * count);
+    scene.triangles.reserve(count);
     Random random(seed);
-    // A triangle with corners spread over a cube of side s has an area of about s^2 / 4 on a page.
-    const double spread = std::sqrt(16.0 / std::max(count, 16u));
     for (std::uint32_t t = 0; t < count; ++t) {
-        const glm::dvec3 base = random.point() * (1 - spread);
-        for (int k = 0; k < 3; ++k) {
-            const glm::vec3 corner = base + spread * random.point();  // rounds to float
-            scene.positions.emplace_back(corner);
+        auto corners = random.triangle();
+        for (glm::dvec3& corner : corners) corner *= radius;
+        const glm::dvec3 low = glm::min(corners[0], glm::min(corners[1], corners[2]));
+        const glm::dvec3 high = glm::max(corners[0], glm::max(corners[1], corners[2]));
+        const glm::dvec3 place = random.point() * (box.size - (high - low));
+        for (const glm::dvec3& corner : corners) {
+            const glm::vec3 rounded = place + (corner - low);  // rounds to float
+            scene.positions.emplace_back(rounded);
         }
         scene.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
         scene.triangle_polygon.push_back(t);

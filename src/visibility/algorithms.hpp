@@ -1,6 +1,7 @@
 // What the algorithms' files offer to the registry, one function a file, and what they share.
 #pragma once
 
+#include <memory>
 #include <string_view>
 
 #include "sightline/visibility.hpp"
@@ -10,6 +11,12 @@ namespace sightline {
 // Each fills out.ids and out.depth, which resolve() has given the size of out.grid.
 void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
 void resolve_zbuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
+void resolve_warnock(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
+
+// The scan-line algorithms make their pictures in bands of rows.
+using OpenRows = std::unique_ptr<RowSource>(const ScreenScene& screen, const SampleGrid& grid,
+                                            const ResolveOptions& options);
+OpenRows open_scanline_zbuffer, open_scanline, open_spans;
 
 /// Adds a counter, when somebody wants them.
 inline void count(const ResolveOptions& options, std::string_view name, std::uint64_t value) {

@@ -5,6 +5,7 @@
 
 #include "sightline/visibility.hpp"
 #include "visibility/algorithms.hpp"
+#include "visibility/parallel.hpp"
 
 namespace sightline {
 
@@ -22,6 +23,32 @@ constexpr std::array kAlgorithms{
               .exact = true,
               .exhaustive = false,
               .resolve = resolve_zbuffer},
+    Algorithm{.name = "scanline-zbuffer",
+              .title = "scan-line z-buffer",
+              .citation = "A. Watt, Fundamentals of Three-Dimensional Computer Graphics, 1989",
+              .help = "one row of depth, used again for every row; for pictures of any height",
+              .space = Space::image,
+              .open_rows = open_scanline_zbuffer},
+    Algorithm{.name = "scanline",
+              .title = "scan-line",
+              .citation = "C. Wylie, G. Romney, D. Evans, A. Erdahl, Half-Tone Perspective "
+                          "Drawings by Computer, 1967",
+              .help = "active edges in the order of x; decides where surfaces begin, end or cross",
+              .space = Space::image,
+              .open_rows = open_scanline},
+    Algorithm{.name = "spans",
+              .title = "spanning scan-line",
+              .citation = "G. Watkins, A Real-Time Visible Surface Algorithm, 1970",
+              .help = "one decision for each span between the ends of segments of a row",
+              .space = Space::image,
+              .open_rows = open_spans},
+    Algorithm{.name = "warnock",
+              .title = "Warnock's subdivision",
+              .citation = "J. Warnock, A Hidden Surface Algorithm for Computer Generated Halftone "
+                          "Pictures, 1969; J. Blinn, Triage Tables, 1990",
+              .help = "divides the picture into quadrants until every one of them is simple",
+              .space = Space::image,
+              .resolve = resolve_warnock},
     Algorithm{.name = "brute",
               .title = "brute force",
               .citation = "J. Foley, A. van Dam, S. Feiner, J. Hughes, Computer Graphics, 1990",
@@ -48,20 +75,50 @@ const Algorithm& default_algorithm() {
     return kAlgorithms.front();
 }
 
+namespace {
+
+Status check_samples(const ScreenScene& screen, std::uint32_t n) {
+    if (std::has_single_bit(n) && n <= kMaxSamplesPerAxis &&
+        (std::int32_t{1} << screen.subpixel_bits()) >= 2 * static_cast<std::int32_t>(n))
+        return success();
+    return Error{ErrorKind::bad_option,
+                 "samples per axis must be a power of two, at most 16: use 1, 2, 4, 8 or 16"};
+}
+
+void resolve_bands(RowSource& rows, const ResolveOptions& options, Visibility& out) {
+    const std::size_t band = std::size_t{rows.band_rows()} * out.grid.columns();
+    const std::uint32_t bands = (out.grid.rows() + rows.band_rows() - 1) / rows.band_rows();
+    for_each_index(bands, options, [&](std::uint32_t b) {
+        rows.resolve_band(b, out.ids.data() + b * band, out.depth.data() + b * band);
+    });
+    rows.report();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm, const ScreenScene& screen,
+                                             const ResolveOptions& options) {
+    if (Status valid = check_samples(screen, options.samples_per_axis); !valid)
+        return valid.error();
+    if (algorithm.open_rows == nullptr)
+        return Error{ErrorKind::bad_option,
+                     std::string(algorithm.name) + " needs the whole picture in memory"};
+    return algorithm.open_rows(screen, {screen.resolution(), options.samples_per_axis}, options);
+}
+
 Status resolve(const Algorithm& algorithm, const ScreenScene& screen, const ResolveOptions& options,
                Visibility& out) {
-    const std::uint32_t n = options.samples_per_axis;
-    if (!std::has_single_bit(n) || n > kMaxSamplesPerAxis ||
-        (std::int32_t{1} << screen.subpixel_bits()) < 2 * static_cast<std::int32_t>(n))
-        return Error{ErrorKind::bad_option,
-                     "samples per axis must be a power of two, at most 16: use 1, 2, 4, 8 or 16"};
-    out.grid = {screen.resolution(), n};
+    if (Status valid = check_samples(screen, options.samples_per_axis); !valid) return valid;
+    out.grid = {screen.resolution(), options.samples_per_axis};
     if (out.grid.count() > kMaxSamples)
         return Error{ErrorKind::bad_option,
                      "the picture has more than 2^28 samples: lower the resolution or the samples"};
     out.ids.resize(out.grid.count());
     out.depth.resize(out.grid.count());
-    algorithm.resolve(screen, options, out);
+    if (algorithm.resolve != nullptr)
+        algorithm.resolve(screen, options, out);
+    else
+        resolve_bands(*algorithm.open_rows(screen, out.grid, options), options, out);
     return success();
 }
 

@@ -18,13 +18,13 @@
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <vector>
 
 #include "visibility/algorithms.hpp"
+#include "visibility/bins.hpp"
 #include "visibility/parallel.hpp"
 #include "visibility/zbuffer_stages.hpp"
 
@@ -36,45 +36,13 @@ using namespace zbuffer;
 
 constexpr float kNotShared = std::numeric_limits<float>::quiet_NaN();
 
-/// What a chunk of triangles puts into each tile: items sorted by tile.
-template <class Item>
-struct Bins {
-    std::vector<Item> items;
-    std::vector<std::uint32_t> first;  ///< of each tile, and the end
-
-    [[nodiscard]] std::span<const Item> of(std::uint32_t tile) const {
-        return {items.data() + first[tile], first[tile + 1] - first[tile]};
-    }
-
-    /// A counting sort: stable, so that a tile meets its items in ascending order.
-    /// for_each(visit) calls visit(tile, item) for all, in the same order each time.
-    template <class ForEach>
-    void sort(std::size_t tiles, const ForEach& for_each) {
-        first.assign(tiles + 2, 0);
-        for_each([&](std::uint32_t tile, const Item&) { ++first[tile + 2]; });
-        for (std::size_t t = 2; t < first.size(); ++t) first[t] += first[t - 1];
-        items.resize(first.back());
-        // first[tile + 1] runs from the tile's start to its end, which is where the next one
-        // starts.
-        for_each([&](std::uint32_t tile, const Item& item) { items[first[tile + 1]++] = item; });
-        first.pop_back();
-    }
-};
-
-GridUnits units_of(const SampleGrid& grid, int subpixel_bits) {
-    GridUnits units;
-    units.columns = static_cast<std::int32_t>(grid.columns());
-    units.rows = static_cast<std::int32_t>(grid.rows());
-    units.offset = grid.offset(subpixel_bits);
-    units.step_bits = std::countr_zero(static_cast<std::uint32_t>(grid.step(subpixel_bits)));
-    units.tiles_x = static_cast<std::int32_t>((grid.columns() + kTileSize - 1) >> kTileBits);
-    units.tiles_y = static_cast<std::int32_t>((grid.rows() + kTileSize - 1) >> kTileBits);
-    return units;
-}
-
 void sort_triangles(const Selected& selected, const GridUnits& grid, Bins<std::uint32_t>& bins) {
     bins.sort(grid.tile_count(), [&](const auto& visit) {
         for (std::size_t i = 0; i < selected.count; ++i) {
+            if (selected.more[i] == 0) {  // most lie in one tile
+                visit(selected.tile[i], selected.triangle[i]);
+                continue;
+            }
             const std::uint32_t columns = selected.more[i] & 0xFFFFu, rows = selected.more[i] >> 16;
             for (std::uint32_t r = 0; r <= rows; ++r)
                 for (std::uint32_t c = 0; c <= columns; ++c)
@@ -94,10 +62,7 @@ void sort_points(const Points& points, const GridUnits& grid, Bins<Point>& bins)
 class ZBuffer {
 public:
     ZBuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out)
-        : screen_(screen),
-          options_(options),
-          out_(out),
-          grid_(units_of(out.grid, screen.subpixel_bits())) {}
+        : screen_(screen), options_(options), out_(out), grid_(out.grid, screen.subpixel_bits()) {}
 
     void run() {
         make_chunks();
@@ -188,9 +153,19 @@ private:
                                      static_cast<std::uint32_t>(tile.row + tile.height)});
     }
 
+    [[nodiscard]] bool is_empty(std::uint32_t index) const {
+        const auto holds = [index](const auto& bins) { return !bins.of(index).empty(); };
+        return std::none_of(triangle_bins_.begin(), triangle_bins_.end(), holds) &&
+               std::none_of(point_bins_.begin(), point_bins_.end(), holds);
+    }
+
     void draw_tile(std::uint32_t index) {
         thread_local const auto tile = std::make_unique<Tile>();
         place_tile(index, *tile);
+        if (is_empty(index)) {
+            write_empty_tile(*tile, grid_, out_.ids.data(), out_.depth.data());
+            return;
+        }
         clear_tile(*tile);
         const RasterInput raster = input();
         // One list, so that vectors are full across the chunks.

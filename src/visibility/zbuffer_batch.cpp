@@ -93,14 +93,13 @@ public:
         : input_(input), grid_(input.grid), tile_(tile), counts_(counts) {}
 
     void draw(std::span<const std::uint32_t> triangles) {
-        const std::size_t lanes = hn::Lanes(kI);
-        Fetched next = fetch_from(triangles, 0);
-        for (std::size_t i = 0; i < triangles.size(); i += lanes) {
-            const Fetched now = next;
-            if (i + lanes < triangles.size()) next = fetch_from(triangles, i + lanes);
-            draw_vector(now);
-            if (tile_.drawn >= kRefreshAfter) refresh_depth();
-        }
+        for_each_vector(
+            input_.screen, triangles.size(),
+            [&](std::size_t i) HWY_ATTR { return fetch_from(triangles, i); },
+            [&](const Fetched& fetched, const CornerLanes& points) HWY_ATTR {
+                draw_vector(fetched, points);
+                if (tile_.drawn >= kRefreshAfter) refresh_depth();
+            });
     }
 
 private:
@@ -114,11 +113,11 @@ private:
         return fetch(input_.screen, hn::BitCast(kI, hn::Load(kU, tail)), triangles.size() - i);
     }
 
-    void draw_vector(const Fetched& fetched) {
+    HWY_INLINE void draw_vector(const Fetched& fetched, const CornerLanes& points) {
         draw_each(fetched.number, hn::AndNot(fetched.whole, fetched.wanted));
         Lanes t;
         M large;
-        const M kept = set_up_lanes(input_, tile_.area(), fetched, t, large);
+        const M kept = set_up_lanes(input_, tile_.area(), fetched, points, t, large);
         draw_each(t.number, large);
         if (hn::AllFalse(kI, kept)) return;
         finish_vector(t, judge_depth(tile_, t, grid_.step_bits, kept));
@@ -288,17 +287,41 @@ HWY_INLINE void write_row(D d, const hn::TFromD<D>* from, std::size_t n, hn::TFr
     std::copy(from + i, from + n, to + i);
 }
 
+// The same with one value.
+template <class D>
+HWY_INLINE void fill_row(D d, hn::TFromD<D> value, std::size_t n, hn::TFromD<D>* to) {
+    const std::size_t lanes = hn::Lanes(d);
+    const auto values = hn::Set(d, value);
+    std::size_t i = 0;
+    if (reinterpret_cast<std::uintptr_t>(to) % (lanes * sizeof(hn::TFromD<D>)) == 0)
+        for (; i + lanes <= n; i += lanes) hn::Stream(values, d, to + i);
+    std::fill(to + i, to + n, value);
+}
+
+// put(row, at): a row of the tile, and where it begins in the picture.
+template <class Put>
+HWY_INLINE void for_each_row(const Tile& tile, const GridUnits& grid, const Put& put) {
+    for (std::int32_t row = 0; row < tile.height; ++row)
+        put(row, static_cast<std::size_t>(tile.row + row) * static_cast<std::size_t>(grid.columns) +
+                     static_cast<std::size_t>(tile.column));
+    hwy::FlushStream();
+}
+
 void write(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
     const auto width = static_cast<std::size_t>(tile.width);
-    for (std::int32_t row = 0; row < tile.height; ++row) {
+    for_each_row(tile, grid, [&](std::int32_t row, std::size_t at) HWY_ATTR {
         const std::size_t from = Tile::index(0, row);
-        const std::size_t to =
-            static_cast<std::size_t>(tile.row + row) * static_cast<std::size_t>(grid.columns) +
-            static_cast<std::size_t>(tile.column);
-        write_row(kU, tile.ids + from, width, ids + to);
-        write_row(kF, tile.depth + from, width, depth + to);
-    }
-    hwy::FlushStream();
+        write_row(kU, tile.ids + from, width, ids + at);
+        write_row(kF, tile.depth + from, width, depth + at);
+    });
+}
+
+void write_empty(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
+    const auto width = static_cast<std::size_t>(tile.width);
+    for_each_row(tile, grid, [&](std::int32_t, std::size_t at) HWY_ATTR {
+        fill_row(kU, kNone, width, ids + at);
+        fill_row(kF, std::numeric_limits<float>::infinity(), width, depth + at);
+    });
 }
 
 }  // namespace
@@ -311,6 +334,7 @@ namespace sightline::zbuffer {
 HWY_EXPORT(draw_batches);
 HWY_EXPORT(clear);
 HWY_EXPORT(write);
+HWY_EXPORT(write_empty);
 
 void clear_tile(Tile& tile) { HWY_DYNAMIC_DISPATCH(clear)(tile); }
 
@@ -326,6 +350,10 @@ void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> tri
 
 void write_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
     HWY_DYNAMIC_DISPATCH(write)(tile, grid, ids, depth);
+}
+
+void write_empty_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
+    HWY_DYNAMIC_DISPATCH(write_empty)(tile, grid, ids, depth);
 }
 
 }  // namespace sightline::zbuffer

@@ -69,8 +69,7 @@ struct Lanes {
     VI dx0, dy0;  // from the plane's anchor to the first sample
 };
 
-// Triangles by number, with the indices of their corners: fetched a vector ahead of their use, for
-// they are scattered over memory.
+// Triangles by number, with the indices of their corners.
 struct Fetched {
     M wanted, whole;  // whole: no piece of a clipped triangle (those have their corners elsewhere)
     VI number, corner[3];
@@ -100,6 +99,27 @@ HWY_INLINE CornerLanes gather_points(const ScreenScene& screen, const Fetched& f
         p.z[k] = hn::GatherIndex(kI, points + 2, at);
     }
     return p;
+}
+
+// Vectors of triangles on their way: while one is worked on, the corners of the next and the
+// indices of the one after it are fetched, for they are scattered over memory.
+// fetch_from(i) gives the triangles from i on.
+template <class FetchFrom, class Work>
+HWY_INLINE void for_each_vector(const ScreenScene& screen, std::size_t count,
+                                const FetchFrom& fetch_from, const Work& work) {
+    if (count == 0) return;
+    const std::size_t lanes = hn::Lanes(kI);
+    Fetched next = fetch_from(std::size_t{0});
+    CornerLanes points = gather_points(screen, next);
+    Fetched after = count > lanes ? fetch_from(lanes) : next;
+    for (std::size_t i = 0; i < count; i += lanes) {
+        const Fetched now = next;
+        const CornerLanes corners = points;
+        next = after;
+        if (i + lanes < count) points = gather_points(screen, next);
+        if (i + 2 * lanes < count) after = fetch_from(i + 2 * lanes);
+        work(now, corners);
+    }
 }
 
 HWY_INLINE VI least(const VI v[3]) { return hn::Min(v[0], hn::Min(v[1], v[2])); }
@@ -258,12 +278,11 @@ HWY_INLINE VF stored_depth_of(VF z0, VF tx, VF ty) {
 // All of the set-up but the judgement of depth: boxes in `area`, edges and planes of the small
 // triangles. Returns the lanes that may cover a sample; `large` gets those that are not small.
 HWY_INLINE M set_up_lanes(const RasterInput& input, const Area& area, const Fetched& fetched,
-                          Lanes& t, M& large) {
+                          CornerLanes p, Lanes& t, M& large) {
     const GridUnits& grid = input.grid;
     t.number = hn::IfThenElseZero(fetched.whole, fetched.number);
     t.gx = t.gy = t.z0 = hn::Zero(kF);
     t.dx0 = t.dy0 = set(0);
-    CornerLanes p = gather_points(input.screen, fetched);
     M small;
     const M in_area = hn::And(fetched.whole, set_boxes(p, grid, area, t, small));
     large = hn::AndNot(small, in_area);

@@ -1,7 +1,4 @@
 // The SIMD stages of the z-buffer, and what they share with its driver.
-//
-// Samples are counted in columns and rows of the grid; sample (i, j) stands at
-// (offset + i * step, offset + j * step) in units of the screen, step a power of two.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +6,7 @@
 #include <vector>
 
 #include "sightline/visibility.hpp"
+#include "visibility/sample_units.hpp"
 #include "visibility/stored_depth.hpp"
 
 namespace sightline::zbuffer {
@@ -16,25 +14,21 @@ namespace sightline::zbuffer {
 inline constexpr std::uint32_t kTileBits = 6;
 inline constexpr std::uint32_t kTileSize = 1u << kTileBits;  ///< samples a side
 
-/// The grid in the form in which the stages need it.
-struct GridUnits {
-    std::int32_t columns = 0, rows = 0;
-    std::int32_t offset = 0;
-    int step_bits = 0;  ///< step = 2^step_bits
+/// The samples, and the tiles that they are shared into.
+struct GridUnits : SampleUnits {
     std::int32_t tiles_x = 0, tiles_y = 0;
 
-    [[nodiscard]] std::int32_t position(std::int32_t index) const {
-        return offset + (index << step_bits);
-    }
+    GridUnits(const SampleGrid& grid, int subpixel_bits)
+        : SampleUnits(grid, subpixel_bits), tiles_x(tiles(columns)), tiles_y(tiles(rows)) {}
+
     [[nodiscard]] std::size_t tile_count() const {
         return static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
     }
-    /// First sample at or after, and last at or before, a coordinate of the screen.
-    [[nodiscard]] std::int32_t first_from(std::int32_t x) const {
-        return (x - offset + (1 << step_bits) - 1) >> step_bits;
-    }
-    [[nodiscard]] std::int32_t last_until(std::int32_t x) const {
-        return (x - offset) >> step_bits;
+
+private:
+    static std::int32_t tiles(std::int32_t samples) {
+        return static_cast<std::int32_t>((static_cast<std::uint32_t>(samples) + kTileSize - 1) >>
+                                         kTileBits);
     }
 };
 
@@ -152,6 +146,9 @@ void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> tri
 
 /// Draws one triangle of any size and steepness; tells the observer of each step.
 void draw_large(const RasterInput& input, std::uint32_t triangle, Tile& tile, TileCounts& counts);
+
+/// Writes a tile that nothing fell into, whose samples need not be cleared.
+void write_empty_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth);
 
 /// Writes the tile's samples to the picture, past the caches where that is possible.
 void write_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth);

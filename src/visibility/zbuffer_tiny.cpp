@@ -30,20 +30,24 @@ public:
             for (std::size_t i = 0; i < selected_.tiny_count; ++i) append_other(selected_.tiny[i]);
             return;
         }
-        const std::size_t lanes = hn::Lanes(kI);
-        for (std::size_t i = 0; i < selected_.tiny_count; i += lanes) {
-            const VI number = hn::BitCast(kI, hn::LoadU(kU, selected_.tiny.data() + i));
-            draw_vector(fetch(input_.screen, number, std::min(lanes, selected_.tiny_count - i)));
-        }
+        const std::size_t lanes = hn::Lanes(kI), count = selected_.tiny_count;
+        for_each_vector(
+            input_.screen, count,
+            [&](std::size_t i) HWY_ATTR {
+                const VI number = hn::BitCast(kI, hn::LoadU(kU, selected_.tiny.data() + i));
+                return fetch(input_.screen, number, std::min(lanes, count - i));
+            },
+            [&](const Fetched& fetched, const CornerLanes& points)
+                HWY_ATTR { draw_vector(fetched, points); });
     }
 
 private:
-    void draw_vector(const Fetched& fetched) {
+    HWY_INLINE void draw_vector(const Fetched& fetched, const CornerLanes& points) {
         const Area picture{0, 0, grid_.columns, grid_.rows};
         append_others(fetched.number, hn::AndNot(fetched.whole, fetched.wanted));
         Lanes t;
         M large;  // none: tiny boxes are small
-        const M kept = set_up_lanes(input_, picture, fetched, t, large);
+        const M kept = set_up_lanes(input_, picture, fetched, points, t, large);
         if (hn::AllFalse(kI, kept)) return;
         const M regular = depth_over_box(t, grid_.step_bits).regular;
         append_others(t.number, hn::AndNot(regular, kept));

@@ -1,4 +1,4 @@
-// Real meshes: the z-buffer equals brute force from many directions.
+// Real meshes: every exact algorithm equals brute force from many directions.
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -33,14 +33,19 @@ void expect_agreement(const Scene& scene, const std::string& name) {
             options.projection = projection;
             const Camera camera = must(make_camera(options, scene.bounds, {320, 240}));
             const ScreenScene screen = must(project(scene, camera));
-            ASSERT_EQ(count_differences(run("zbuffer", screen), run("brute", screen)), 0u)
-                << name << " direction " << k;
+            const Visibility truth = run("brute", screen);
+            for (const Algorithm& algorithm : algorithms()) {
+                if (!algorithm.exact || algorithm.exhaustive) continue;
+                const Visibility seen = run(std::string(algorithm.name), screen);
+                ASSERT_EQ(count_differences(truth, seen), 0u)
+                    << name << " direction " << k << ", " << algorithm.name;
+            }
         }
 }
 
 class RealModel : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RealModel, ZBufferEqualsBruteForce) {
+TEST_P(RealModel, EveryExactAlgorithmEqualsBruteForce) {
     const std::optional<Scene> scene = real_model(GetParam());
     if (!scene)
         GTEST_SKIP() << models_folder() / GetParam() << " is not there; set SIGHTLINE_MODELS";
@@ -49,7 +54,9 @@ TEST_P(RealModel, ZBufferEqualsBruteForce) {
 
 INSTANTIATE_TEST_SUITE_P(All, RealModel, ::testing::Values("teapot.obj", "cow.obj", "fandisk.obj"));
 
-TEST(Model, ZBufferEqualsBruteForceOnASphere) { expect_agreement(sphere_scene(40, 60), "sphere"); }
+TEST(Model, EveryExactAlgorithmEqualsBruteForceOnASphere) {
+    expect_agreement(sphere_scene(40, 60), "sphere");
+}
 
 }  // namespace
 }  // namespace sightline

@@ -1,0 +1,205 @@
+// Spans: in each row, one decision for every stretch between the ends of the polygons' segments.
+//
+// Source: G. Watkins, "A Real-Time Visible SampledPlane Algorithm", University of Utah, 1970; the
+// plane of a scan line cuts each polygon in a segment, and between two neighbouring ends of
+// segments the set of segments does not change.
+//
+// How this version differs: a span is decided from its first and last sample. Depths along a row
+// are linear, so the surface that wins at both (by depth, then id) wins at all between. Where two
+// different ones win, they or others between them cross: the span is cut where the one at the left
+// stops being nearer than the one at the right, and both halves are decided in the same way. So
+// penetrating polygons need no care and the answer is canonical. Bands of rows are independent.
+//
+// Time O(spans * segments on them) a row, memory O(columns + active triangles).
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "visibility/active_spans.hpp"
+#include "visibility/algorithms.hpp"
+
+namespace sightline {
+
+namespace {
+
+/// The part of a triangle that lies in the plane of the row: columns left .. right-1.
+struct Segment {
+    std::int32_t left, right;
+    std::uint32_t slot;
+};
+
+bool begins_before(const Segment& a, const Segment& b) { return a.left < b.left; }
+
+class Machine {
+public:
+    struct Counts {
+        std::uint64_t segments = 0, spans = 0, samples = 0, decisions = 0, splits = 0,
+                      comparisons = 0, exact = 0, most_active = 0;
+
+        Counts& operator+=(const Counts& other) {
+            segments += other.segments;
+            spans += other.spans;
+            samples += other.samples;
+            decisions += other.decisions;
+            splits += other.splits;
+            comparisons += other.comparisons;
+            exact += other.exact;
+            most_active = std::max(most_active, other.most_active);
+            return *this;
+        }
+        void report(const ResolveOptions& options) const {
+            count(options, "segments", segments);
+            count(options, "active triangles at most", most_active);
+            count(options, "spans", spans);
+            count(options, "samples in spans", samples);
+            count(options, "span decisions", decisions);
+            count(options, "spans split at crossings", splits);
+            count(options, "depth comparisons", comparisons);
+            count(options, "exact comparisons", exact);
+        }
+    };
+
+    Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
+        : screen_(screen), units_(units), observer_(observer), judge_(screen, units, observer) {}
+
+    void add(std::uint32_t number, std::int32_t row) {
+        const std::uint32_t slot = pool_.add(screen_, units_, number, row);
+        if (slot == kNone) return;
+        if (observer_ != nullptr)
+            observer_->step({StepKind::triangle_taken, pool_[slot].surface.id});
+        fresh_.push_back(segment_of(slot));
+    }
+
+    void row(std::int32_t j, std::uint32_t* ids, float* depth) {
+        row_ = j;
+        ids_ = ids;
+        depth_ = depth;
+        cut_segments();
+        counts.most_active = std::max<std::uint64_t>(counts.most_active, pool_.size());
+        counts.segments += segments_.size();
+        sweep(segments_);
+        advance();
+        counts.comparisons = judge_.comparisons;
+        counts.exact = judge_.exact;
+    }
+
+    Counts counts;
+
+private:
+    [[nodiscard]] Segment segment_of(std::uint32_t slot) const {
+        const RowTriangle& rows = pool_[slot].rows;
+        return {rows.left(), rows.right(), slot};
+    }
+
+    // The segments of this row in the order of their left ends.
+    void cut_segments() {
+        restore_order(active_, begins_before);
+        merge_into(active_, fresh_, begins_before);
+        segments_.clear();
+        for (const Segment& s : active_)
+            if (s.left < s.right) segments_.push_back(s);
+    }
+
+    // To the next row; triangles that end here leave.
+    void advance() {
+        std::size_t kept = 0;
+        for (const Segment& s : active_) {
+            pool_[s.slot].rows.advance(units_);
+            if (pool_[s.slot].rows.empty())
+                pool_.release(s.slot);
+            else
+                active_[kept++] = segment_of(s.slot);
+        }
+        active_.resize(kept);
+    }
+
+    // From boundary to boundary; on_ holds the segments between two of them.
+    void sweep(const std::vector<Segment>& segments) {
+        on_.clear();
+        std::int32_t x = 0;
+        for (std::size_t next = 0; next < segments.size() || !on_.empty();) {
+            if (on_.empty()) {
+                fill_background(x, segments[next].left, ids_, depth_);
+                x = segments[next].left;
+            }
+            while (next < segments.size() && segments[next].left == x)
+                on_.push_back(segments[next++]);
+            std::int32_t end = next < segments.size() ? segments[next].left : units_.columns;
+            for (const Segment& s : on_) end = std::min(end, s.right);
+            take_span(x, end);
+            std::erase_if(on_, [end](const Segment& s) { return s.right == end; });
+            x = end;
+        }
+        fill_background(x, units_.columns, ids_, depth_);
+    }
+
+    void take_span(std::int32_t first, std::int32_t end) {
+        ++counts.spans;
+        counts.samples += static_cast<std::uint64_t>(end - first);
+        if (on_.size() == 1) {
+            write(pool_[on_[0].slot].surface, first, end);
+            return;
+        }
+        decide(first, end, nearest(first), nearest(end - 1));
+    }
+
+    // The winners at both ends are known.
+    void decide(std::int32_t first, std::int32_t end, const SampledPlane& at_first,
+                const SampledPlane& at_last) {
+        if (&at_first == &at_last) {
+            ++counts.decisions;
+            write(at_first, first, end);
+            return;
+        }
+        ++counts.splits;
+        const std::int32_t cut = judge_.crossing(at_first, at_last, first, end - 1, row_);
+        tell(StepKind::span_split, at_first, at_last.id, first, end);
+        decide(first, cut, at_first, cut - 1 == first ? at_first : nearest(cut - 1));
+        decide(cut, end, cut == end - 1 ? at_last : nearest(cut), at_last);
+    }
+
+    const SampledPlane& nearest(std::int32_t i) {
+        const SampledPlane* best = &pool_[on_[0].slot].surface;
+        for (std::size_t k = 1; k < on_.size(); ++k) {
+            const SampledPlane& s = pool_[on_[k].slot].surface;
+            if (judge_.before(s, *best, i, row_)) best = &s;
+        }
+        return *best;
+    }
+
+    void write(const SampledPlane& surface, std::int32_t first, std::int32_t end) {
+        fill_run(screen_, units_, surface, row_, first, end, ids_, depth_);
+        tell(StepKind::span_decided, surface, kNone, first, end);
+    }
+
+    void tell(StepKind kind, const SampledPlane& surface, std::uint32_t other, std::int32_t first,
+              std::int32_t end) const {
+        if (observer_ == nullptr) return;
+        const auto y = static_cast<std::uint32_t>(row_);
+        observer_->step({kind, surface.id, other, static_cast<std::uint32_t>(first), y,
+                         static_cast<std::uint32_t>(end), y + 1});
+    }
+
+    const ScreenScene& screen_;
+    SampleUnits units_;
+    Observer* observer_;
+    DepthJudge judge_;
+    ActivePool pool_;
+    std::vector<Segment> active_;    // all that reach this row, by left end
+    std::vector<Segment> fresh_;     // those that begin in it
+    std::vector<Segment> segments_;  // those that cover a sample of it
+    std::vector<Segment> on_;
+    std::int32_t row_ = 0;
+    std::uint32_t* ids_ = nullptr;
+    float* depth_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_spans(const ScreenScene& screen, const SampleGrid& grid,
+                                      const ResolveOptions& options) {
+    return std::make_unique<RowScanner<Machine>>(screen, grid, options);
+}
+
+}  // namespace sightline
