@@ -36,7 +36,10 @@ struct ActiveEdge {
     bool is_on;    ///< false when no sample lies between the triangle's edges
 };
 
-bool is_left_of(const ActiveEdge& a, const ActiveEdge& b) { return a.column < b.column; }
+// An object and not a function, so that sorting inlines it.
+constexpr auto is_left_of = [](const ActiveEdge& a, const ActiveEdge& b) {
+    return a.column < b.column;
+};
 
 /// What is known of two surfaces wherever both are.
 enum class Order : std::int8_t { either, first_hides, second_hides };
