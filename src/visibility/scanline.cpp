@@ -15,12 +15,14 @@
 //
 // Time O(rows * active edges + decisions), memory O(columns + active edges).
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "visibility/active_spans.hpp"
 #include "visibility/algorithms.hpp"
+#include "visibility/counts.hpp"
 
 namespace sightline {
 
@@ -50,34 +52,27 @@ struct Memory {
     Order order = Order::either;
 };
 
+enum class Count : std::uint8_t {
+    edges,
+    most_active,
+    runs,
+    alone,
+    computed,
+    kept,
+    crossings,
+    exact
+};
+
+constexpr std::array kCountNames{
+    CountName{"edges activated"},     CountName{"active edges at most", Combine::maximum},
+    CountName{"runs of one surface"}, CountName{"runs that needed no depth"},
+    CountName{"depth comparisons"},   CountName{"decisions kept from lines before"},
+    CountName{"crossings"},           CountName{"exact comparisons"},
+};
+
 class Machine {
 public:
-    struct Counts {
-        std::uint64_t edges = 0, runs = 0, alone = 0, computed = 0, kept = 0, crossings = 0,
-                      exact = 0, most_active = 0;
-
-        Counts& operator+=(const Counts& other) {
-            edges += other.edges;
-            runs += other.runs;
-            alone += other.alone;
-            computed += other.computed;
-            kept += other.kept;
-            crossings += other.crossings;
-            exact += other.exact;
-            most_active = std::max(most_active, other.most_active);
-            return *this;
-        }
-        void report(const ResolveOptions& options) const {
-            count(options, "edges activated", edges);
-            count(options, "active edges at most", most_active);
-            count(options, "runs of one surface", runs);
-            count(options, "runs that needed no depth", alone);
-            count(options, "depth comparisons", computed);
-            count(options, "decisions kept from lines before", kept);
-            count(options, "crossings", crossings);
-            count(options, "exact comparisons", exact);
-        }
-    };
+    using Counts = sightline::Counts<Count, kCountNames>;
 
     Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
         : screen_(screen), units_(units), observer_(observer), judge_(screen, units, observer) {}
@@ -91,7 +86,7 @@ public:
         }
         serial_[slot] = ++last_serial_;
         memory_[slot] = {};
-        counts.edges += 2;
+        counts[Count::edges] += 2;
         for (const bool is_left : {true, false}) {
             fresh_.push_back(edge_of(slot, is_left));
             tell(StepKind::edge_activated, slot, kNone, fresh_.back().column,
@@ -105,11 +100,11 @@ public:
         depth_ = depth;
         restore_order(edges_, is_left_of);
         merge_into(edges_, fresh_, is_left_of);
-        counts.most_active = std::max<std::uint64_t>(counts.most_active, edges_.size());
+        counts.reaches(Count::most_active, edges_.size());
         sweep();
         advance();
-        counts.computed = judge_.comparisons + related_;
-        counts.exact = judge_.exact;
+        counts[Count::computed] = judge_.comparisons + related_;
+        counts[Count::exact] = judge_.exact;
     }
 
     Counts counts;
@@ -160,7 +155,7 @@ private:
     // The crossings of the visible surface with others that lie before column x.
     void cross_until(std::int32_t x) {
         while (change_ < x) {
-            ++counts.crossings;
+            ++counts[Count::crossings];
             const std::int32_t at = change_;
             const std::uint32_t before = visible_;
             emit(before, at);
@@ -239,7 +234,7 @@ private:
     }
 
     Order recall(Order known) {
-        if (known != Order::either) ++counts.kept;
+        if (known != Order::either) ++counts[Count::kept];
         return known;
     }
 
@@ -279,8 +274,8 @@ private:
         if (slot == kNone) {
             fill_background(from_, end, ids_, depth_);
         } else {
-            ++counts.runs;
-            counts.alone += alone_;
+            ++counts[Count::runs];
+            counts[Count::alone] += alone_;
             fill_run(screen_, units_, surface(slot), row_, from_, end, ids_, depth_);
             tell(StepKind::span_decided, slot, kNone, from_, end, row_);
         }

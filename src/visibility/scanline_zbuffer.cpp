@@ -12,12 +12,14 @@
 //
 // Time O(rows * active triangles + covered samples), memory O(columns + active triangles).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "visibility/algorithms.hpp"
+#include "visibility/counts.hpp"
 #include "visibility/row_bands.hpp"
 
 namespace sightline {
@@ -49,25 +51,18 @@ struct Walker {
         : active(screen, units, number, row) {}
 };
 
+enum class Count : std::uint8_t { triangles, most_active, samples, exact };
+
+constexpr std::array kCountNames{
+    CountName{"triangles set up in bands"},
+    CountName{"active triangles at most", Combine::maximum},
+    CountName{"depth comparisons"},
+    CountName{"exact comparisons"},
+};
+
 class Machine {
 public:
-    struct Counts {
-        std::uint64_t triangles = 0, samples = 0, exact = 0, most_active = 0;
-
-        Counts& operator+=(const Counts& other) {
-            triangles += other.triangles;
-            samples += other.samples;
-            exact += other.exact;
-            most_active = std::max(most_active, other.most_active);
-            return *this;
-        }
-        void report(const ResolveOptions& options) const {
-            count(options, "triangles set up in bands", triangles);
-            count(options, "active triangles at most", most_active);
-            count(options, "depth comparisons", samples);
-            count(options, "exact comparisons", exact);
-        }
-    };
+    using Counts = sightline::Counts<Count, kCountNames>;
 
     Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
         : screen_(screen),
@@ -86,18 +81,18 @@ public:
         }
         if (observer_ != nullptr) observer_->step({StepKind::triangle_taken, w.active.surface.id});
         start(w);
-        ++counts.triangles;
+        ++counts[Count::triangles];
     }
 
     void row(std::int32_t j, std::uint32_t* ids, float* depth) {
-        counts.most_active = std::max<std::uint64_t>(counts.most_active, active_.size());
+        counts.reaches(Count::most_active, active_.size());
         std::fill(z_.begin(), z_.end(), kNothing);
         std::fill(owner_.begin(), owner_.end(), kNone);
         for (std::uint32_t k = 0; k < active_.size(); ++k) {
             const Walker& w = active_[k];
             const std::int32_t left = w.active.rows.left(), right = w.active.rows.right();
             if (left >= right) continue;
-            counts.samples += static_cast<std::uint64_t>(right - left);
+            counts[Count::samples] += static_cast<std::uint64_t>(right - left);
             if (w.regular)
                 draw(k, j, left, right);
             else
@@ -105,7 +100,7 @@ public:
         }
         write(j, ids, depth);
         advance();
-        counts.exact = judge_.exact;
+        counts[Count::exact] = judge_.exact;
     }
 
     Counts counts;

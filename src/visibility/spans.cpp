@@ -12,12 +12,14 @@
 //
 // Time O(spans * segments on them) a row, memory O(columns + active triangles).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include "visibility/active_spans.hpp"
 #include "visibility/algorithms.hpp"
+#include "visibility/counts.hpp"
 
 namespace sightline {
 
@@ -32,34 +34,31 @@ struct Segment {
 // An object and not a function, so that sorting inlines it.
 constexpr auto begins_before = [](const Segment& a, const Segment& b) { return a.left < b.left; };
 
+enum class Count : std::uint8_t {
+    segments,
+    most_active,
+    spans,
+    samples,
+    decisions,
+    splits,
+    comparisons,
+    exact
+};
+
+constexpr std::array kCountNames{
+    CountName{"segments"},
+    CountName{"active triangles at most", Combine::maximum},
+    CountName{"spans"},
+    CountName{"samples in spans"},
+    CountName{"span decisions"},
+    CountName{"spans split at crossings"},
+    CountName{"depth comparisons"},
+    CountName{"exact comparisons"},
+};
+
 class Machine {
 public:
-    struct Counts {
-        std::uint64_t segments = 0, spans = 0, samples = 0, decisions = 0, splits = 0,
-                      comparisons = 0, exact = 0, most_active = 0;
-
-        Counts& operator+=(const Counts& other) {
-            segments += other.segments;
-            spans += other.spans;
-            samples += other.samples;
-            decisions += other.decisions;
-            splits += other.splits;
-            comparisons += other.comparisons;
-            exact += other.exact;
-            most_active = std::max(most_active, other.most_active);
-            return *this;
-        }
-        void report(const ResolveOptions& options) const {
-            count(options, "segments", segments);
-            count(options, "active triangles at most", most_active);
-            count(options, "spans", spans);
-            count(options, "samples in spans", samples);
-            count(options, "span decisions", decisions);
-            count(options, "spans split at crossings", splits);
-            count(options, "depth comparisons", comparisons);
-            count(options, "exact comparisons", exact);
-        }
-    };
+    using Counts = sightline::Counts<Count, kCountNames>;
 
     Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
         : screen_(screen), units_(units), observer_(observer), judge_(screen, units, observer) {}
@@ -77,12 +76,12 @@ public:
         ids_ = ids;
         depth_ = depth;
         cut_segments();
-        counts.most_active = std::max<std::uint64_t>(counts.most_active, pool_.size());
-        counts.segments += segments_.size();
+        counts.reaches(Count::most_active, pool_.size());
+        counts[Count::segments] += segments_.size();
         sweep(segments_);
         advance();
-        counts.comparisons = judge_.comparisons;
-        counts.exact = judge_.exact;
+        counts[Count::comparisons] = judge_.comparisons;
+        counts[Count::exact] = judge_.exact;
     }
 
     Counts counts;
@@ -136,8 +135,8 @@ private:
     }
 
     void take_span(std::int32_t first, std::int32_t end) {
-        ++counts.spans;
-        counts.samples += static_cast<std::uint64_t>(end - first);
+        ++counts[Count::spans];
+        counts[Count::samples] += static_cast<std::uint64_t>(end - first);
         if (on_.size() == 1) {
             write(pool_[on_[0].slot].surface, first, end);
             return;
@@ -149,11 +148,11 @@ private:
     void decide(std::int32_t first, std::int32_t end, const SampledPlane& at_first,
                 const SampledPlane& at_last) {
         if (&at_first == &at_last) {
-            ++counts.decisions;
+            ++counts[Count::decisions];
             write(at_first, first, end);
             return;
         }
-        ++counts.splits;
+        ++counts[Count::splits];
         const std::int32_t cut = judge_.crossing(at_first, at_last, first, end - 1, row_);
         tell(StepKind::span_split, at_first, at_last.id, first, end);
         decide(first, cut, at_first, cut - 1 == first ? at_first : nearest(cut - 1));
