@@ -16,7 +16,7 @@ help:
 	echo 'make test       every test, also under sanitizers, and a short fuzz run'
 	echo 'make test-full  the same with the heavy cases, the thread sanitizer and longer fuzzing'
 	echo 'make lint       format and static analysis'
-	echo 'make gallery    draw the pictures of docs/gallery/ anew'
+	echo 'make gallery    draw the pictures of docs/gallery/ and docs/algorithms/ anew'
 	echo 'make install    into PREFIX (default /usr/local), below DESTDIR if that is set'
 	echo 'make clean      remove build/ and out/'
 
@@ -31,7 +31,8 @@ demo: build
 
 gallery: build
 	scripts/run-readme.sh docs/gallery
-	echo 'The pictures of docs/gallery/ are new.'
+	scripts/draw-algorithms.sh docs/algorithms
+	echo 'The pictures of docs/gallery/ and docs/algorithms/ are new.'
 
 test:
 	scripts/test.sh

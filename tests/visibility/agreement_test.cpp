@@ -16,7 +16,14 @@ using namespace testing;
 constexpr Resolution kSmall{56, 48};
 
 // More scenes where somebody has the time: make test-full.
-std::uint64_t scene_count() { return std::getenv("SIGHTLINE_FULL") != nullptr ? 100000 : 3000; }
+std::uint64_t scene_count() {
+#ifdef SIGHTLINE_SANITIZED
+    constexpr std::uint64_t kFull = 10000;
+#else
+    constexpr std::uint64_t kFull = 100000;
+#endif
+    return std::getenv("SIGHTLINE_FULL") != nullptr ? kFull : 3000;
+}
 
 std::string describe(std::uint64_t seed, std::string_view algorithm) {
     return "seed " + std::to_string(seed) + ", " + std::string(algorithm);

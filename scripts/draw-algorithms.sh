@@ -1,0 +1,16 @@
+#!/bin/sh
+# Draws how each algorithm of the registry decides the sample house: the pictures of
+# docs/algorithms/. The exhaustive ones have nothing to show.
+#
+#   scripts/draw-algorithms.sh FOLDER
+set -eu
+cd "$(dirname "$0")/.."
+folder=${1:?usage: scripts/draw-algorithms.sh FOLDER}
+scripts/install-deps.sh build test
+cmake --preset release -D SIGHTLINE_TESTS=ON >/dev/null
+cmake --build build/release --target watch_algorithm >/dev/null
+build/release/bin/sightline algorithms --json |
+    tr '{' '\n' | grep '"exhaustive": *false' | sed -E 's/.*"name": *"([^"]*)".*/\1/' |
+    while read -r name; do
+        build/release/bin/watch_algorithm samples/house.obj "$name" "$folder/$name.png"
+    done
