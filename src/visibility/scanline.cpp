@@ -20,7 +20,7 @@
 #include <memory>
 #include <vector>
 
-#include "visibility/active_spans.hpp"
+#include "visibility/active_pool.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
 
@@ -30,18 +30,12 @@ namespace {
 
 constexpr std::int32_t kNever = std::numeric_limits<std::int32_t>::max();
 
-/// An edge of the active edge list. At its column the triangle's flag turns to in or out.
-struct ActiveEdge {
-    std::int32_t column;
-    std::uint32_t slot;
-    bool is_left;  ///< in; otherwise out
-    bool is_on;    ///< false when no sample lies between the triangle's edges
-};
-
-// An object and not a function, so that sorting inlines it.
-constexpr auto is_left_of = [](const ActiveEdge& a, const ActiveEdge& b) {
-    return a.column < b.column;
-};
+// An edge of the active edge list is named by its triangle's slot and its side: at its column the
+// triangle's flag turns to in (left) or out (right).
+constexpr std::uint32_t left_edge(std::uint32_t slot) { return 2 * slot; }
+constexpr std::uint32_t right_edge(std::uint32_t slot) { return 2 * slot + 1; }
+constexpr bool is_left(std::uint32_t edge) { return edge % 2 == 0; }
+constexpr std::uint32_t slot_of(std::uint32_t edge) { return edge / 2; }
 
 /// What is known of two surfaces wherever both are.
 enum class Order : std::int8_t { either, first_hides, second_hides };
@@ -75,7 +69,11 @@ public:
     using Counts = sightline::Counts<Count, kCountNames>;
 
     Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
-        : screen_(screen), units_(units), observer_(observer), judge_(screen, units, observer) {}
+        : screen_(screen),
+          units_(units),
+          observer_(observer),
+          judge_(screen, units, observer),
+          edges_(units.columns) {}
 
     void add(std::uint32_t number, std::int32_t row) {
         const std::uint32_t slot = pool_.add(screen_, units_, number, row);
@@ -87,22 +85,19 @@ public:
         serial_[slot] = ++last_serial_;
         memory_[slot] = {};
         counts[Count::edges] += 2;
-        for (const bool is_left : {true, false}) {
-            fresh_.push_back(edge_of(slot, is_left));
-            tell(StepKind::edge_activated, slot, kNone, fresh_.back().column,
-                 fresh_.back().column + 1, row);
-        }
+        const RowTriangle& rows = pool_.rows(slot);
+        for (const std::int32_t x : {rows.left(), rows.right()})
+            tell(StepKind::edge_activated, slot, kNone, x, x + 1, row);
     }
 
     void row(std::int32_t j, std::uint32_t* ids, float* depth) {
         row_ = j;
         ids_ = ids;
         depth_ = depth;
-        restore_order(edges_, is_left_of);
-        merge_into(edges_, fresh_, is_left_of);
-        counts.reaches(Count::most_active, edges_.size());
+        list_edges();
+        counts.reaches(Count::most_active, 2 * pool_.active().size());
         sweep();
-        advance();
+        pool_.advance(units_);
         counts[Count::computed] = judge_.comparisons + related_;
         counts[Count::exact] = judge_.exact;
     }
@@ -110,46 +105,51 @@ public:
     Counts counts;
 
 private:
-    [[nodiscard]] ActiveEdge edge_of(std::uint32_t slot, bool is_left) const {
-        const RowTriangle& rows = pool_[slot].rows;
-        const std::int32_t left = rows.left(), right = rows.right();
-        return {is_left ? left : right, slot, is_left, left < right};
-    }
     [[nodiscard]] const SampledPlane& surface(std::uint32_t slot) const {
-        return pool_[slot].surface;
+        return pool_.plane(slot);
     }
 
     // -- one line ----------------------------------------------------------------------------
+
+    // The active edge list in the order of x. Triangles that lie between two samples of the line
+    // stay away from it.
+    void list_edges() {
+        for (const std::uint32_t slot : pool_.active()) {
+            const std::int32_t left = pool_.rows(slot).left(), right = pool_.rows(slot).right();
+            if (left >= right) continue;
+            edges_.put(left, left_edge(slot));
+            edges_.put(right, right_edge(slot));
+        }
+    }
 
     void sweep() {
         on_.clear();
         visible_ = kNone;
         from_ = 0;
         change_ = kNever;
-        for (std::size_t k = 0; k < edges_.size();) {
-            const std::int32_t x = edges_[k].column;
+        edges_.take_all([&](std::int32_t x, std::uint32_t edge) {
             cross_until(x);
             const std::uint32_t before = visible_;
             begun_.clear();
-            for (; k < edges_.size() && edges_[k].column == x; ++k) turn_flag(edges_[k]);
+            for (; edge != kNone; edge = edges_.next(edge)) turn_flag(edge);
             if (visible_ == kNone || before == kNone || change_ == x)
                 decide_anew(x, before);
             else if (!begun_.empty())
                 challenge(x);
-        }
+        });
         emit(visible_, units_.columns);
     }
 
-    void turn_flag(const ActiveEdge& edge) {
-        if (!edge.is_on) return;
-        if (edge.is_left) {
-            on_.push_back(edge.slot);
-            begun_.push_back(edge.slot);
+    void turn_flag(std::uint32_t edge) {
+        const std::uint32_t slot = slot_of(edge);
+        if (is_left(edge)) {
+            on_.push_back(slot);
+            begun_.push_back(slot);
             return;
         }
-        *std::find(on_.begin(), on_.end(), edge.slot) = on_.back();
+        *std::find(on_.begin(), on_.end(), slot) = on_.back();
         on_.pop_back();
-        if (edge.slot == visible_) visible_ = kNone;
+        if (slot == visible_) visible_ = kNone;
     }
 
     // The crossings of the visible surface with others that lie before column x.
@@ -211,7 +211,7 @@ private:
     std::int32_t overtaking(std::uint32_t slot, std::int32_t x) {
         if (order(visible_, slot) == Order::first_hides) return kNever;
         const std::int32_t last =
-            std::min(pool_[visible_].rows.right(), pool_[slot].rows.right()) - 1;
+            std::min(pool_.rows(visible_).right(), pool_.rows(slot).right()) - 1;
         const SampledPlane &a = surface(visible_), &b = surface(slot);
         if (last <= x || judge_.before(a, b, last, row_)) return kNever;
         return judge_.crossing(a, b, x, last, row_);
@@ -249,10 +249,10 @@ private:
         if (s.shared != kNone && s.shared == t.shared)
             return s.id < t.id ? Order::first_hides : Order::second_hides;
         ++related_;
-        tell(StepKind::depths_compared, a, t.id, pool_[a].rows.left(), pool_[a].rows.right(), row_);
-        const std::int32_t left = std::max(pool_[a].first_column, pool_[b].first_column);
-        const std::int32_t right = std::min(pool_[a].end_column, pool_[b].end_column) - 1;
-        const std::int32_t bottom = std::min(pool_[a].rows.end_row(), pool_[b].rows.end_row()) - 1;
+        tell(StepKind::depths_compared, a, t.id, pool_.rows(a).left(), pool_.rows(a).right(), row_);
+        const std::int32_t left = std::max(pool_.columns(a).first, pool_.columns(b).first);
+        const std::int32_t right = std::min(pool_.columns(a).end, pool_.columns(b).end) - 1;
+        const std::int32_t bottom = std::min(pool_.rows(a).end_row(), pool_.rows(b).end_row()) - 1;
         const double slack = s.slack + t.slack;
         bool first = true, second = true;
         for (const std::int32_t i : {left, right}) {
@@ -290,20 +290,6 @@ private:
                          static_cast<std::uint32_t>(end), y + 1});
     }
 
-    // To the next line; edges of triangles that end here leave.
-    void advance() {
-        std::size_t kept = 0;
-        for (const ActiveEdge& edge : edges_) {
-            RowTriangle& rows = pool_[edge.slot].rows;
-            if (rows.row() == row_) rows.advance(units_);  // at the first of its two edges
-            if (!rows.empty())
-                edges_[kept++] = edge_of(edge.slot, edge.is_left);
-            else if (edge.is_left)
-                pool_.release(edge.slot);
-        }
-        edges_.resize(kept);
-    }
-
     const ScreenScene& screen_;
     SampleUnits units_;
     Observer* observer_;
@@ -313,7 +299,7 @@ private:
     std::vector<Memory> memory_;         // by slot
     std::uint32_t last_serial_ = 0;
     std::uint64_t related_ = 0;
-    std::vector<ActiveEdge> edges_, fresh_;  // the active edge list, and what joins it
+    ColumnBuckets edges_;                    // the active edge list
     std::vector<std::uint32_t> on_, begun_;  // surfaces whose flag is in; those that just turned
     std::uint32_t visible_ = kNone;
     std::int32_t from_ = 0, change_ = kNever;  // the visible run's start, and its first crossing

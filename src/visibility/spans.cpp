@@ -17,7 +17,7 @@
 #include <memory>
 #include <vector>
 
-#include "visibility/active_spans.hpp"
+#include "visibility/active_pool.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
 
@@ -30,9 +30,6 @@ struct Segment {
     std::int32_t left, right;
     std::uint32_t slot;
 };
-
-// An object and not a function, so that sorting inlines it.
-constexpr auto begins_before = [](const Segment& a, const Segment& b) { return a.left < b.left; };
 
 enum class Count : std::uint8_t {
     segments,
@@ -61,14 +58,16 @@ public:
     using Counts = sightline::Counts<Count, kCountNames>;
 
     Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
-        : screen_(screen), units_(units), observer_(observer), judge_(screen, units, observer) {}
+        : screen_(screen),
+          units_(units),
+          observer_(observer),
+          judge_(screen, units, observer),
+          buckets_(units.columns) {}
 
     void add(std::uint32_t number, std::int32_t row) {
         const std::uint32_t slot = pool_.add(screen_, units_, number, row);
         if (slot == kNone) return;
-        if (observer_ != nullptr)
-            observer_->step({StepKind::triangle_taken, pool_[slot].surface.id});
-        fresh_.push_back(segment_of(slot));
+        if (observer_ != nullptr) observer_->step({StepKind::triangle_taken, pool_.plane(slot).id});
     }
 
     void row(std::int32_t j, std::uint32_t* ids, float* depth) {
@@ -76,10 +75,10 @@ public:
         ids_ = ids;
         depth_ = depth;
         cut_segments();
-        counts.reaches(Count::most_active, pool_.size());
+        counts.reaches(Count::most_active, pool_.active().size());
         counts[Count::segments] += segments_.size();
         sweep(segments_);
-        advance();
+        pool_.advance(units_);
         counts[Count::comparisons] = judge_.comparisons;
         counts[Count::exact] = judge_.exact;
     }
@@ -87,31 +86,17 @@ public:
     Counts counts;
 
 private:
-    [[nodiscard]] Segment segment_of(std::uint32_t slot) const {
-        const RowTriangle& rows = pool_[slot].rows;
-        return {rows.left(), rows.right(), slot};
-    }
-
     // The segments of this row in the order of their left ends.
     void cut_segments() {
-        restore_order(active_, begins_before);
-        merge_into(active_, fresh_, begins_before);
-        segments_.clear();
-        for (const Segment& s : active_)
-            if (s.left < s.right) segments_.push_back(s);
-    }
-
-    // To the next row; triangles that end here leave.
-    void advance() {
-        std::size_t kept = 0;
-        for (const Segment& s : active_) {
-            pool_[s.slot].rows.advance(units_);
-            if (pool_[s.slot].rows.empty())
-                pool_.release(s.slot);
-            else
-                active_[kept++] = segment_of(s.slot);
+        for (const std::uint32_t slot : pool_.active()) {
+            const RowTriangle& rows = pool_.rows(slot);
+            if (rows.left() < rows.right()) buckets_.put(rows.left(), slot);
         }
-        active_.resize(kept);
+        segments_.clear();
+        buckets_.take_all([&](std::int32_t left, std::uint32_t first) {
+            for (std::uint32_t slot = first; slot != kNone; slot = buckets_.next(slot))
+                segments_.push_back({left, pool_.rows(slot).right(), slot});
+        });
     }
 
     // From boundary to boundary; on_ holds the segments between two of them.
@@ -138,7 +123,7 @@ private:
         ++counts[Count::spans];
         counts[Count::samples] += static_cast<std::uint64_t>(end - first);
         if (on_.size() == 1) {
-            write(pool_[on_[0].slot].surface, first, end);
+            write(pool_.plane(on_[0].slot), first, end);
             return;
         }
         decide(first, end, nearest(first), nearest(end - 1));
@@ -160,9 +145,9 @@ private:
     }
 
     const SampledPlane& nearest(std::int32_t i) {
-        const SampledPlane* best = &pool_[on_[0].slot].surface;
+        const SampledPlane* best = &pool_.plane(on_[0].slot);
         for (std::size_t k = 1; k < on_.size(); ++k) {
-            const SampledPlane& s = pool_[on_[k].slot].surface;
+            const SampledPlane& s = pool_.plane(on_[k].slot);
             if (judge_.before(s, *best, i, row_)) best = &s;
         }
         return *best;
@@ -186,9 +171,8 @@ private:
     Observer* observer_;
     DepthJudge judge_;
     ActivePool pool_;
-    std::vector<Segment> active_;    // all that reach this row, by left end
-    std::vector<Segment> fresh_;     // those that begin in it
-    std::vector<Segment> segments_;  // those that cover a sample of it
+    ColumnBuckets buckets_;
+    std::vector<Segment> segments_;  // those that cover a sample of the row, by left end
     std::vector<Segment> on_;
     std::int32_t row_ = 0;
     std::uint32_t* ids_ = nullptr;
