@@ -10,7 +10,7 @@
 // bit.
 //
 // Two stages, both on all cores. Geometry: chunks of consecutive triangles are gathered a vector at
-// a time; what covers no sample is dropped; triangles of at most 2 x 2 samples are drawn to points
+// a time; what covers no sample is dropped; triangles of at most 3 x 3 samples are drawn to points
 // at once; the rest goes, by number, into the bins of its tiles. Raster: each tile is owned by one
 // task, which takes its points and triangles, near chunks first, into depth and ids that stay in
 // the core's cache, and writes finished rows once. Under an observer triangles are drawn one by

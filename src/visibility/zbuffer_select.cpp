@@ -51,7 +51,7 @@ HWY_INLINE M covers_sample(const Triangles& t, V sx, V sy) {
 
 struct Boxes {
     V column0, column1, row0, row1;  // first and last sample, clamped to the grid
-    M kept, narrow;                  // narrow: spans less than three steps
+    M kept, narrow;                  // narrow: small enough to be tiny
 };
 
 template <class Shift>
@@ -67,9 +67,11 @@ HWY_INLINE Boxes boxes_of(const Triangles& t, const GridUnits& grid, const Shift
     b.column1 = hn::Min(shift_right(hn::Add(x_max, down)), hn::Set(kI, grid.columns - 1));
     b.row1 = hn::Min(shift_right(hn::Add(y_max, down)), hn::Set(kI, grid.rows - 1));
     b.kept = hn::Not(hn::Or(hn::Gt(b.column0, b.column1), hn::Gt(b.row0, b.row1)));
-    // A box of one sample away from the borders spans less than three steps: decide it here.
-    b.narrow = hn::And(hn::Lt(hn::Sub(x_max, x_min), hn::Set(kI, 3 << grid.step_bits)),
-                       hn::Lt(hn::Sub(y_max, y_min), hn::Set(kI, 3 << grid.step_bits)));
+    // A tiny box away from the borders spans less than one step more: if it is of one sample, it is
+    // decided here.
+    b.narrow =
+        hn::And(hn::Lt(hn::Sub(x_max, x_min), hn::Set(kI, (kTinySide + 1) << grid.step_bits)),
+                hn::Lt(hn::Sub(y_max, y_min), hn::Set(kI, (kTinySide + 1) << grid.step_bits)));
     const M single =
         hn::And(b.narrow, hn::And(hn::Eq(b.column0, b.column1), hn::Eq(b.row0, b.row1)));
     if (!hn::AllFalse(kI, hn::And(b.kept, single))) {
@@ -111,10 +113,10 @@ HWY_INLINE void select_vector(const ScreenScene& screen, const GridUnits& grid,
     const auto store = [&](V v, M mask, std::uint32_t* to) {
         return hn::CompressStore(hn::BitCast(kU, v), hn::RebindMask(kU, mask), kU, to);
     };
-    const V two = hn::Set(kI, 2);
-    const M tiny = hn::And(
-        hn::And(kept, b.narrow),
-        hn::And(hn::Lt(hn::Sub(b.column1, b.column0), two), hn::Lt(hn::Sub(b.row1, b.row0), two)));
+    const V side = hn::Set(kI, kTinySide);
+    const M tiny =
+        hn::And(hn::And(kept, b.narrow), hn::And(hn::Lt(hn::Sub(b.column1, b.column0), side),
+                                                 hn::Lt(hn::Sub(b.row1, b.row0), side)));
     out.tiny_count += store(number, tiny, out.tiny.data() + out.tiny_count);
     kept = hn::AndNot(tiny, kept);
     if (hn::AllFalse(kI, kept)) return;

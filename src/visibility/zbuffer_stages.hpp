@@ -32,9 +32,12 @@ private:
     }
 };
 
+/// A triangle is tiny when its box has at most this many samples a side.
+inline constexpr std::int32_t kTinySide = 3;
+
 /// Triangles that may cover samples.
 struct Selected {
-    /// Boxes of at most 2 x 2 samples: their numbers.
+    /// The tiny ones: their numbers.
     std::vector<std::uint32_t> tiny;
     std::size_t tiny_count = 0;
     /// The others: number, first tile (row-major), further tiles (columns + (rows << 16)).

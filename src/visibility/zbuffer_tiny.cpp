@@ -1,4 +1,4 @@
-// Geometry stage of the z-buffer: triangles whose box is at most two by two samples.
+// Geometry stage of the z-buffer: triangles whose box is at most three by three samples.
 //
 // In dense meshes most triangles are of this kind. They are drawn where their corners are already
 // in the cache, a vector of triangles at a time, to points: place, depth and id of each sample that
@@ -56,13 +56,13 @@ private:
 
     void emit_samples(const Lanes& t, M kept) {
         const VI step = set(1 << grid_.step_bits);
-        for (int r = 0; r < 2; ++r)
-            for (int c = 0; c < 2; ++c) {
+        for (int r = 0; r < kTinySide; ++r)
+            for (int c = 0; c < kTinySide; ++c) {
                 const VI column = set(c), row = set(r);
                 const auto edge = [&](int k) {
                     VI e = t.edges.at[k];
-                    if (c == 1) e = hn::Add(e, t.edges.per_column[k]);
-                    if (r == 1) e = hn::Add(e, t.edges.per_row[k]);
+                    for (int n = 0; n < c; ++n) e = hn::Add(e, t.edges.per_column[k]);
+                    for (int n = 0; n < r; ++n) e = hn::Add(e, t.edges.per_row[k]);
                     return e;
                 };
                 const M inside = hn::Gt(hn::Or(edge(0), hn::Or(edge(1), edge(2))), set(-1));
@@ -139,8 +139,8 @@ namespace sightline::zbuffer {
 HWY_EXPORT(draw);
 
 void draw_tiny(const RasterInput& input, Selected& selected, Points& out) {
-    // Four samples a triangle at most, and room for a whole vector behind the last.
-    const std::size_t room = 4 * selected.tiny_count + 64;
+    // Room for all samples of all boxes, and for a whole vector behind the last.
+    const std::size_t room = std::size_t{kTinySide * kTinySide} * selected.tiny_count + 64;
     if (out.place.size() < room) {
         out.place.resize(room);
         out.id.resize(room);
