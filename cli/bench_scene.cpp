@@ -10,6 +10,7 @@
 
 #include "report.hpp"
 #include "sightline/generate.hpp"
+#include "tessellate.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -73,6 +74,10 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
     progress.stage("loading");
     Result<Scene> loaded = load(options);
     if (!loaded) return loaded.error();
+    if (!options.algorithm->quadrics) {
+        tessellate_for(fmt::format("'{}' takes triangles only", options.algorithm->name), *loaded,
+                       options.common.quiet, progress);
+    }
     bench.load_ms = watch.lap();
 
     // The camera is chosen before the model grows; near and far are fitted afterwards.

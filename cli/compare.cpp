@@ -10,6 +10,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "tessellate.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -197,8 +198,9 @@ Result<int> run(const Arguments& arguments) {
     Progress progress(options->common.quiet);
     Stopwatch watch;
     progress.stage("loading");
-    const Result<Scene> scene = load_scene(options->models.paths, options->models.options);
+    Result<Scene> scene = load_scene(options->models.paths, options->models.options);
     if (!scene) return scene.error();
+    tessellate_for("compared on triangles", *scene, options->common.quiet, progress);
     const double load_ms = watch.lap();
     const auto camera = camera_for(*scene, options->camera, options->resolution);
     if (!camera) return camera.error();
@@ -250,7 +252,8 @@ const Command kCompare = {
     "MODEL...",
     "Counts the samples (at the pixels' centres) whose triangle or depth differs from the\n"
     "reference: 'brute' up to 2^38 samples times triangles or when it is named, else the first\n"
-    "exact algorithm. Exit status 1 when an algorithm that promises exactness differs.",
+    "exact algorithm. Surfaces that are not polygons are tessellated for all. Exit status 1 when "
+    "an algorithm that promises exactness differs.",
     kGroups,
     kExamples,
     run};

@@ -88,6 +88,7 @@ void json_scene(const Scene& scene, Value::Object& object) {
     object.emplace_back("objects", objects);
     object.emplace_back("materials", materials);
     object.emplace_back("triangles", scene.triangle_count());
+    object.emplace_back("quadrics", std::uint64_t{scene.quadrics.size()});
     object.emplace_back("polygons", scene.counts.polygons);
     object.emplace_back("vertices", std::uint64_t{scene.positions.size()});
     object.emplace_back("degenerate_triangles", scene.counts.degenerate_triangles);
@@ -162,6 +163,8 @@ std::string scene_text(const Scene& scene) {
     }
     text += fmt::format("\n{}\n", to_grid(rows));
     return text + to_table({{"", "triangles", scene.triangle_count(), ""},
+                            {"", "surfaces that are not polygons",
+                             std::uint64_t{scene.quadrics.size()}, ""},
                             {"", "polygons", scene.counts.polygons, ""},
                             {"", "vertices", std::uint64_t{scene.positions.size()}, ""},
                             {"", "degenerate triangles", scene.counts.degenerate_triangles, ""},

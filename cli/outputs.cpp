@@ -168,31 +168,34 @@ void check_outputs(OptionReader& reader, std::span<const Output> outputs,
     }
 }
 
-Status OutputBatch::publish() {
-    // What can't be taken back (a stream) goes last.
-    const auto is_stream = [](const Job& job) {
-        return job.output.path == "-" || is_device(job.output.path);
+OutputBatch::OutputBatch(std::vector<Output> outputs) : outputs_(std::move(outputs)) {
+    const auto is_stream = [](const Output& output) {
+        return output.path == "-" || is_device(output.path);
     };
-    std::stable_partition(jobs_.begin(), jobs_.end(),
-                          [&](const Job& job) { return !is_stream(job); });
-    if (jobs_.size() == 1) return jobs_.front().writer(jobs_.front().output.path);
-    std::vector<std::unique_ptr<TemporaryFile>> staged;
-    for (const Job& job : jobs_) {
-        if (is_stream(job)) {
-            if (Status done = job.writer(job.output.path); !done) return done;
-            continue;
-        }
-        const fs::path folder = folder_of(identity(job.output.path));
-        staged.push_back(std::make_unique<TemporaryFile>(folder, "staged"));
-        const std::string& path = staged.back()->path();
-        if (Status done = job.writer(path); !done) {
-            return with_name(done.error(), path, job.output.path);
+    const auto files =
+        std::stable_partition(outputs_.begin(), outputs_.end(),
+                              [&](const Output& output) { return !is_stream(output); }) -
+        outputs_.begin();
+    if (outputs_.size() == 1) return;
+    for (std::ptrdiff_t i = 0; i < files; ++i) {
+        const fs::path folder = folder_of(identity(outputs_[static_cast<std::size_t>(i)].path));
+        staged_.push_back(std::make_unique<TemporaryFile>(folder, "staged"));
+    }
+}
+
+const std::string& OutputBatch::path(std::size_t i) const {
+    return i < staged_.size() ? staged_[i]->path() : outputs_[i].path;
+}
+
+Status OutputBatch::publish(Status written) {
+    for (std::size_t i = 0; i < staged_.size(); ++i) {
+        if (!written) {
+            written = with_name(written.error(), staged_[i]->path(), outputs_[i].path);
+        } else {
+            written = rename_to_target(*staged_[i], outputs_[i]);
         }
     }
-    for (std::size_t i = 0; i < staged.size(); ++i) {
-        if (Status done = rename_to_target(*staged[i], jobs_[i].output); !done) return done;
-    }
-    return success();
+    return written;
 }
 
 }  // namespace sightline::cli

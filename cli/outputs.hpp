@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,9 +29,6 @@ std::optional<Output> read_output(OptionReader& reader, std::string_view option,
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,
                    std::span<const std::string> inputs);
 
-/// Writes one picture to a path.
-using Writer = std::function<Status(const std::string& path)>;
-
 /// A name for a file that must not stay: removed by the destructor and when the program is stopped.
 class TemporaryFile {
 public:
@@ -48,20 +45,23 @@ private:
     int ticket_ = -1;
 };
 
-/// Collects pictures and publishes them together: they are written beside their targets under
-/// temporary names, and renamed when every one of them is complete.
+/// Files that appear together: several of them are written beside their targets under temporary
+/// names, and renamed when every one of them is complete.
 class OutputBatch {
 public:
-    void add(const Output& output, Writer writer) { jobs_.push_back({output, std::move(writer)}); }
-    /// Writes all. After an error nothing of them is left.
-    [[nodiscard]] Status publish();
+    explicit OutputBatch(std::vector<Output> outputs);
+
+    /// In the order in which they are to be completed: streams last, which can't be taken back.
+    [[nodiscard]] std::span<const Output> outputs() const { return outputs_; }
+    /// Where outputs()[i] is to be written.
+    [[nodiscard]] const std::string& path(std::size_t i) const;
+    /// Gives all files their names. After an error that `written` has, nothing of them is left, and
+    /// its message names the files as the user does.
+    [[nodiscard]] Status publish(Status written);
 
 private:
-    struct Job {
-        Output output;
-        Writer writer;
-    };
-    std::vector<Job> jobs_;
+    std::vector<Output> outputs_;
+    std::vector<std::unique_ptr<TemporaryFile>> staged_;  // of the first outputs, if any
 };
 
 }  // namespace sightline::cli

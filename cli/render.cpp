@@ -1,7 +1,6 @@
 // `sightline render`: a picture of a model, with maps of depth, ids, normals and coverage.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "errors.hpp"
@@ -10,34 +9,15 @@
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "suggest.hpp"
+#include "tessellate.hpp"
 
 namespace sightline::cli {
 namespace {
 
 constexpr std::array kPictureFormats = {ImageFormat::png, ImageFormat::exr, ImageFormat::npy};
 constexpr std::array kMaskFormats = {ImageFormat::npy, ImageFormat::png};
-constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;  // what resolve() takes
-constexpr std::uint64_t kMaxPerAxis = 8;
 
 // -- options -----------------------------------------------------------------------------------
-
-void read_samples(OptionReader& reader, RenderOptions& options) {
-    const std::string expected = "a square grid of samples: 1, 4, 16 or 64";
-    const auto samples = reader.count("--samples", 1, kMaxPerAxis * kMaxPerAxis, expected);
-    if (!samples) return;
-    const auto n =
-        static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(*samples))));
-    if (n * n != *samples || !std::has_single_bit(n)) {
-        reader.fail(wrong_use("--samples: '{}' is not {}", *samples, expected));
-        return;
-    }
-    options.per_axis = n;
-    const SampleGrid grid{options.resolution, n};
-    if (std::uint64_t{options.resolution.width} * n * options.resolution.height * n > kMaxSamples) {
-        reader.fail(wrong_use("--samples: {} a pixel at {}x{} are over 2^28; choose fewer",
-                              *samples, grid.resolution.width, grid.resolution.height));
-    }
-}
 
 void read_shading(OptionReader& reader, RenderOptions& options) {
     std::array<std::string_view, 7> names;
@@ -64,22 +44,28 @@ void read_layers(OptionReader& reader, RenderOptions& options) {
             reader.fail(wrong_use("--aov: '{}' is unknown; choose from normals, ids", name));
         }
     }
-    if (!options.color || options.color->format != ImageFormat::exr) {
+    const bool has_exr =
+        std::any_of(options.outputs.begin(), options.outputs.end(), [](const PictureOutput& p) {
+            return p.content == PictureContent::color && p.output.format == ImageFormat::exr;
+        });
+    if (!has_exr) {
         reader.fail(wrong_use("--aov needs an EXR picture; write to a name like -o picture.exr"));
     }
 }
 
 void read_outputs(OptionReader& reader, RenderOptions& options) {
-    options.color = read_output(reader, "--output", kPictureFormats);
-    options.depth = read_output(reader, "--depth", kPictureFormats);
-    options.ids = read_output(reader, "--ids", kPictureFormats);
-    options.normals = read_output(reader, "--normals", kPictureFormats);
-    options.mask = read_output(reader, "--mask", kMaskFormats);
     std::vector<Output> outputs;
-    for (const auto* output :
-         {&options.color, &options.depth, &options.ids, &options.normals, &options.mask}) {
-        if (*output) outputs.push_back(**output);
-    }
+    const auto read = [&](PictureContent content, std::string_view option, auto formats) {
+        auto output = read_output(reader, option, formats);
+        if (!output) return;
+        outputs.push_back(*output);
+        options.outputs.push_back({content, std::move(*output)});
+    };
+    read(PictureContent::color, "--output", std::span(kPictureFormats));
+    read(PictureContent::depth, "--depth", std::span(kPictureFormats));
+    read(PictureContent::ids, "--ids", std::span(kPictureFormats));
+    read(PictureContent::normals, "--normals", std::span(kPictureFormats));
+    read(PictureContent::mask, "--mask", std::span(kMaskFormats));
     if (outputs.empty()) {
         reader.fail(
             wrong_use("nothing to write; name a file, as in -o picture.png (or --depth, "
@@ -101,12 +87,11 @@ Result<RenderOptions> read_options(const Arguments& arguments) {
     RenderOptions options;
     options.models = read_models(reader);
     options.camera = read_camera(reader);
-    options.resolution = read_resolution(reader, Resolution{});
     const auto chosen = reader.algorithms("--algorithm");
     if (chosen.size() > 1) reader.fail(wrong_use("--algorithm: give one; `compare` takes several"));
     options.algorithm = chosen.empty() ? &default_algorithm() : chosen.front();
     options.cull = read_cull(reader, Cull::automatic);
-    read_samples(reader, options);
+    read_size(reader, options);
     read_shading(reader, options);
     options.common = read_common(reader);
     read_outputs(reader, options);
@@ -125,10 +110,14 @@ Shading decide_shading(const RenderOptions& options, const Scene& scene) {
     return has_normals ? Shading::phong : Shading::flat;
 }
 
-Result<Scene> load(const RenderOptions& options) {
+Result<Scene> load(const RenderOptions& options, Progress& progress) {
     Result<Scene> scene = load_scene(options.models.paths, options.models.options);
     if (!scene) return scene;
     if (Status done = apply_opacity(*scene, options.opacity); !done) return done.error();
+    if (!options.algorithm->quadrics) {
+        tessellate_for(fmt::format("'{}' takes triangles only", options.algorithm->name), *scene,
+                       options.common.quiet, progress);
+    }
     if (options.shading && is_smooth(*options.shading)) make_normals(*scene, options.crease_angle);
     return scene;
 }
@@ -136,21 +125,20 @@ Result<Scene> load(const RenderOptions& options) {
 // -- what is reported --------------------------------------------------------------------------
 
 struct Times {
-    double load = 0, project = 0, resolve = 0, shade = 0, write = 0;
+    double load = 0, project = 0;
 };
 
 std::vector<Row> report_rows(const RenderOptions& options, Shading shading, const Scene& scene,
-                             const Frame& frame, const Times& times) {
-    const ProjectCounts& counts = frame.screen.counts();
+                             const ProjectCounts& counts, const Drawn& drawn, const Times& times) {
     const double candidates = static_cast<double>(counts.triangles - counts.degenerate);
     const double culled =
         candidates > 0 ? 100 * static_cast<double>(counts.culled) / candidates : 0;
     std::vector<Row> rows = {
         {"load_ms", "load", milliseconds(times.load), "ms"},
         {"project_ms", "project", milliseconds(times.project), "ms"},
-        {"resolve_ms", "resolve", milliseconds(times.resolve), "ms"},
-        {"shade_ms", "shade", milliseconds(times.shade), "ms"},
-        {"write_ms", "write", milliseconds(times.write), "ms"},
+        {"resolve_ms", "resolve", milliseconds(drawn.resolve), "ms"},
+        {"shade_ms", "shade", milliseconds(drawn.shade), "ms"},
+        {"write_ms", "write", milliseconds(drawn.write), "ms"},
         {"algorithm", "algorithm", options.algorithm->name, ""},
         {"shading", "shading", name_of(shading), ""},
         {"width", "width", options.resolution.width, "pixels"},
@@ -161,6 +149,7 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"concave_polygons", "concave polygons", scene.counts.concave_polygons, ""},
         {"ignored_primitives", "points and lines ignored", scene.counts.ignored_primitives, ""},
         {"triangles", "triangles", counts.triangles, ""},
+        {"quadrics", "surfaces that are not polygons", std::uint64_t{scene.quadrics.size()}, ""},
         {"degenerate_triangles", "degenerate triangles dropped", counts.degenerate, ""},
         {"back_facing", "triangles that face away", counts.back_facing, ""},
         {"culled", "triangles culled by side", counts.culled, ""},
@@ -169,7 +158,7 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"clipped", "triangles clipped", counts.clipped, ""},
         {"pieces", "pieces they left", counts.pieces, ""},
     };
-    for (const Counter& counter : frame.counters) {
+    for (const Counter& counter : drawn.counters) {
         std::string key = counter.name;
         std::replace(key.begin(), key.end(), ' ', '_');
         rows.push_back({key, counter.name, counter.value, ""});
@@ -200,7 +189,7 @@ Result<int> run(const Arguments& arguments) {
     Times times;
 
     progress.stage("loading");
-    const Result<Scene> scene = load(options);
+    const Result<Scene> scene = load(options, progress);
     if (!scene) return scene.error();
     const Shading shading = decide_shading(options, *scene);
     warn_about_translucency(options, *scene, progress);
@@ -209,25 +198,16 @@ Result<int> run(const Arguments& arguments) {
     progress.stage("projecting");
     const auto camera = camera_for(*scene, options.camera, options.resolution);
     if (!camera) return camera.error();
-    auto screen = project(*scene, *camera, {options.cull, options.common.threads});
+    const auto screen = project(*scene, *camera, {options.cull, options.common.threads});
     if (!screen) return screen.error();
-    Frame frame;
-    frame.screen = std::move(*screen);
     times.project = watch.lap();
 
-    progress.stage("deciding what is visible");
-    if (Status done = resolve_samples(options, frame); !done) return done.error();
-    times.resolve = watch.lap();
-
-    progress.stage("shading");
-    shade_frame(options, shading, frame);
-    times.shade = watch.lap();
-
-    progress.stage("writing");
-    if (Status done = write_frame(options, shading, frame); !done) return done.error();
-    times.write = watch.lap();
+    const auto drawn = draw_outputs(options, shading, *screen, progress);
+    if (!drawn) return drawn.error();
     progress.clear();
-    if (Status done = report(options, report_rows(options, shading, *scene, frame, times)); !done) {
+    if (Status done =
+            report(options, report_rows(options, shading, *scene, screen->counts(), *drawn, times));
+        !done) {
         return done.error();
     }
     return 0;

@@ -5,9 +5,18 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "errors.hpp"
+#include "report.hpp"
 
 namespace sightline::cli {
 namespace {
+
+constexpr std::uint64_t kMaxSide = 65536;                      // what project() takes
+constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;  // what resolve() takes
+constexpr std::uint64_t kMaxPerAxis = 8;
 
 /// Linear light, premultiplied.
 glm::vec4 linear_color(glm::u8vec4 srgb) {
@@ -16,58 +25,49 @@ glm::vec4 linear_color(glm::u8vec4 srgb) {
             alpha};
 }
 
-ShadeOptions shade_options(const RenderOptions& options, Shading shading) {
-    return {shading, linear_color(options.background), options.common.threads};
+/// An algorithm that makes a picture row by row, for those who chose one that can't.
+std::string_view algorithm_for_large_pictures() {
+    const auto all = algorithms();
+    const auto found =
+        std::ranges::find_if(all, [](const Algorithm& a) { return a.open_rows != nullptr; });
+    return found == all.end() ? "" : found->name;
 }
 
-Status write_color(const RenderOptions& options, Shading shading, const Frame& frame,
-                   const std::string& path) {
-    if (options.color->format == ImageFormat::png) {
-        return write_shaded_png(path, frame.screen, frame.samples, shade_options(options, shading));
+/// An error unless the algorithm can hold so many samples.
+std::optional<Error> check_samples(const Algorithm& algorithm, std::string_view option,
+                                   glm::u64vec2 size, std::uint64_t samples) {
+    if (algorithm.open_rows != nullptr || size.x * size.y * samples <= kMaxSamples) {
+        return std::nullopt;
     }
-    if (options.color->format == ImageFormat::npy) return write_npy(path, frame.color);
-    ExrLayers layers;
-    layers.color = &frame.color;
-    layers.depth = &frame.depth;
-    if (options.layers.normals) layers.normals = &frame.normals;
-    if (options.layers.ids) layers.objects = &frame.objects, layers.triangles = &frame.triangles;
-    return write_exr(path, layers);
+    return wrong_use("{}: {} a pixel at {}x{} are over 2^28 samples; use --algorithm {}", option,
+                     samples, size.x, size.y, algorithm_for_large_pictures());
 }
 
-Status write_depth(ImageFormat format, const Frame& frame, const std::string& path) {
-    const Camera& camera = frame.screen.camera();
-    if (format == ImageFormat::png) {
-        return write_depth_png(path, frame.depth, camera.near_plane, camera.far_plane);
+/// Times the stages and tells the terminal of them.
+class StageWatch {
+public:
+    StageWatch(Drawn& drawn, Progress& progress, std::uint32_t rows)
+        : drawn_(drawn), progress_(progress), rows_(rows) {}
+
+    void enter(DrawStage stage, std::uint32_t rows_done) {
+        leave();
+        stage_ = stage;
+        if (stage == DrawStage::resolve) progress_.stage("drawing rows", rows_done, rows_);
     }
-    if (format == ImageFormat::npy) return write_npy(path, frame.depth);
-    ExrLayers layers;
-    layers.depth = &frame.depth;
-    return write_exr(path, layers);
-}
+    void leave() {
+        const double ms = watch_.lap();
+        if (stage_ == DrawStage::resolve) drawn_.resolve += ms;
+        if (stage_ == DrawStage::shade) drawn_.shade += ms;
+        if (stage_ == DrawStage::write) drawn_.write += ms;
+    }
 
-Status write_ids(ImageFormat format, const Frame& frame, const std::string& path) {
-    if (format == ImageFormat::png) return write_ids_png(path, frame.triangles);
-    if (format == ImageFormat::npy) return write_npy(path, frame.triangles);
-    ExrLayers layers;
-    layers.objects = &frame.objects;
-    layers.triangles = &frame.triangles;
-    return write_exr(path, layers);
-}
-
-Status write_normals(ImageFormat format, const Frame& frame, const std::string& path) {
-    if (format == ImageFormat::png) return write_normals_png(path, frame.normals);
-    if (format == ImageFormat::npy) return write_npy(path, frame.normals);
-    ExrLayers layers;
-    layers.normals = &frame.normals;
-    return write_exr(path, layers);
-}
-
-bool writes_exr(const RenderOptions& options) {
-    const auto outputs = {&options.color, &options.depth, &options.ids, &options.normals};
-    return std::any_of(outputs.begin(), outputs.end(), [](const std::optional<Output>* output) {
-        return *output && (*output)->format == ImageFormat::exr;
-    });
-}
+private:
+    Drawn& drawn_;
+    Progress& progress_;
+    std::uint32_t rows_;
+    DrawStage stage_ = DrawStage::resolve;
+    Stopwatch watch_;
+};
 
 /// OpenEXR compresses on a pool of its own, which is the program's to fill: the library leaves it
 /// alone. The bytes are the same.
@@ -78,63 +78,63 @@ void use_exr_threads(int threads) {
 
 }  // namespace
 
-bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading == Shading::phong; }
-
-Status resolve_samples(const RenderOptions& options, Frame& frame) {
-    ResolveOptions resolving{options.per_axis, options.common.threads, nullptr, &frame.counters};
-    if (options.color) {
-        if (Status done = resolve(*options.algorithm, frame.screen, resolving, frame.samples);
-            !done) {
-            return done;
+void read_size(OptionReader& reader, RenderOptions& options) {
+    const auto text = reader.arguments().value("--resolution");
+    const auto size = text ? parse_size(*text) : std::nullopt;
+    const auto is_side = [](std::uint64_t side) { return side > 0 && side <= kMaxSide; };
+    if (size && is_side(size->x) && is_side(size->y)) {
+        if (auto error = check_samples(*options.algorithm, "--resolution", *size, 1)) {
+            reader.fail(std::move(*error));
         }
+        options.resolution = {static_cast<std::uint32_t>(size->x),
+                              static_cast<std::uint32_t>(size->y)};
+    } else {
+        options.resolution = read_resolution(reader, Resolution{});
     }
-    if (!options.needs_centres() || (options.color && options.per_axis == 1)) return success();
-    resolving.samples_per_axis = 1;
-    // The counters of the picture are those to report.
-    if (options.color) resolving.counters = nullptr;
-    return resolve(*options.algorithm, frame.screen, resolving, frame.centre_store);
+
+    const std::string expected = "a square grid of samples: 1, 4, 16 or 64";
+    const auto samples = reader.count("--samples", 1, kMaxPerAxis * kMaxPerAxis, expected);
+    if (!samples) return;
+    const auto n =
+        static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(*samples))));
+    if (n * n != *samples || !std::has_single_bit(n)) {
+        reader.fail(wrong_use("--samples: '{}' is not {}", *samples, expected));
+        return;
+    }
+    options.per_axis = n;
+    if (auto error =
+            check_samples(*options.algorithm, "--samples",
+                          {options.resolution.width, options.resolution.height}, *samples)) {
+        reader.fail(std::move(*error));
+    }
 }
 
-void shade_frame(const RenderOptions& options, Shading shading, Frame& frame) {
-    if (options.needs_color_image()) {
-        frame.color = shade(frame.screen, frame.samples, shade_options(options, shading));
-    }
-    if (!options.needs_centres()) return;
-    const Visibility& centres = frame.centres();
-    const bool is_exr = options.color && options.color->format == ImageFormat::exr;
-    if (options.depth || is_exr) frame.depth = depth_map(frame.screen, centres);
-    if (options.ids || options.layers.ids) {
-        frame.triangles = triangle_map(centres);
-        frame.objects = object_map(frame.screen, centres);
-    }
-    if (options.normals || options.layers.normals) {
-        frame.normals = normal_map(frame.screen, centres, is_smooth(shading));
-    }
-    if (options.mask) frame.mask = mask_map(centres);
-}
-
-Status write_frame(const RenderOptions& options, Shading shading, const Frame& frame) {
-    if (writes_exr(options)) use_exr_threads(options.common.threads);
-    OutputBatch batch;
-    if (options.color) {
-        batch.add(*options.color, [&](const std::string& path) {
-            return write_color(options, shading, frame, path);
+Result<Drawn> draw_outputs(const RenderOptions& options, Shading shading, const ScreenScene& screen,
+                           Progress& progress) {
+    std::vector<Output> outputs;
+    for (const PictureOutput& picture : options.outputs) outputs.push_back(picture.output);
+    OutputBatch batch(std::move(outputs));
+    std::vector<PictureFile> files;
+    for (std::size_t i = 0; i < batch.outputs().size(); ++i) {
+        const Output& output = batch.outputs()[i];
+        const auto picture = std::ranges::find_if(options.outputs, [&](const PictureOutput& p) {
+            return p.output.option == output.option;
         });
+        files.push_back({picture->content, batch.path(i), output.format, options.layers.normals,
+                         options.layers.ids});
+        if (output.format == ImageFormat::exr) use_exr_threads(options.common.threads);
     }
-    const auto add = [&](const std::optional<Output>& output, auto write) {
-        if (!output) return;
-        const ImageFormat format = output->format;
-        batch.add(*output, [&frame, format, write](const std::string& path) {
-            return write(format, frame, path);
-        });
-    };
-    add(options.depth, write_depth);
-    add(options.ids, write_ids);
-    add(options.normals, write_normals);
-    add(options.mask, [](ImageFormat format, const Frame& f, const std::string& path) {
-        return format == ImageFormat::png ? write_mask_png(path, f.mask) : write_npy(path, f.mask);
-    });
-    return batch.publish();
+    Drawn drawn;
+    StageWatch watch(drawn, progress, options.resolution.height);
+    const DrawOptions drawing{
+        options.per_axis,
+        {shading, linear_color(options.background), options.common.threads},
+        &drawn.counters,
+        [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); }};
+    Status done = batch.publish(draw(screen, *options.algorithm, drawing, files));
+    watch.leave();
+    if (!done) return done.error();
+    return drawn;
 }
 
 }  // namespace sightline::cli

@@ -9,12 +9,19 @@
 #include "materials.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "progress.hpp"
 #include "sightline/sightline.hpp"
 
 namespace sightline::cli {
 
 struct Layers {
     bool normals = false, ids = false;  ///< of --aov
+};
+
+/// An output and what goes into it.
+struct PictureOutput {
+    PictureContent content;
+    Output output;
 };
 
 struct RenderOptions {
@@ -30,45 +37,20 @@ struct RenderOptions {
     glm::u8vec4 background{255};
     std::vector<OpacityRule> opacity;
     Layers layers;
-    std::optional<Output> color, depth, ids, normals, mask;
-
-    /// Linear colours of the whole picture stand in memory only for formats that hold them.
-    [[nodiscard]] bool needs_color_image() const {
-        return color && color->format != ImageFormat::png;
-    }
-    /// Whether something is written that is resolved at the pixels' centres.
-    [[nodiscard]] bool needs_centres() const {
-        return depth || ids || normals || mask || (color && color->format == ImageFormat::exr);
-    }
+    std::vector<PictureOutput> outputs;
 };
 
-/// Everything between a scene and its files.
-struct Frame {
-    ScreenScene screen;
-    Visibility samples, centre_store;
-    ColorImage color;  ///< unless it is a PNG, which is shaded while it is written
-    DepthImage depth;
-    IdImage triangles, objects;
-    NormalImage normals;
-    MaskImage mask;
+/// --resolution and --samples within the limits of the algorithm, which is known already.
+void read_size(OptionReader& reader, RenderOptions& options);
+
+/// What drawing took, in milliseconds, and what the algorithm counted.
+struct Drawn {
+    double resolve = 0, shade = 0, write = 0;
     std::vector<Counter> counters;
-
-    /// Visibility at the pixels' centres; with one sample a pixel it is that of the picture.
-    [[nodiscard]] const Visibility& centres() const {
-        return samples.grid.per_axis == 1 && !samples.ids.empty() ? samples : centre_store;
-    }
 };
-
-/// Whether normals are interpolated.
-[[nodiscard]] bool is_smooth(Shading shading);
-
-/// Decides what is seen at the samples that the outputs need.
-[[nodiscard]] Status resolve_samples(const RenderOptions& options, Frame& frame);
-
-/// Makes the pictures and maps that are written as they stand in memory.
-void shade_frame(const RenderOptions& options, Shading shading, Frame& frame);
 
 /// Writes all outputs, or none after an error.
-[[nodiscard]] Status write_frame(const RenderOptions& options, Shading shading, const Frame& frame);
+[[nodiscard]] Result<Drawn> draw_outputs(const RenderOptions& options, Shading shading,
+                                         const ScreenScene& screen, Progress& progress);
 
 }  // namespace sightline::cli

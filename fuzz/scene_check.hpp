@@ -46,6 +46,8 @@ inline void check(const Scene& scene) {
         next += object.triangle_count;
     }
     require(next == n);
+    require(scene.quadrics.size() <= scene.objects.size());
+    for (const Quadric& quadric : scene.quadrics) require(is_regular(quadric));
 }
 
 inline void check(const Result<Scene>& scene) {

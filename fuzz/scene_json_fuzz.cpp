@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         sightline::fuzz::check_message(scene.error());
         return 0;
     }
-    require(!scene->models.empty());
+    require(!scene->models.empty() || !scene->surfaces.empty());
+    for (const auto& surface : scene->surfaces) require(sightline::is_regular(surface.quadric));
     for (const auto& model : scene->models) {
         require(!model.path.empty());
         const auto& opacity = model.material.opacity;

@@ -18,7 +18,7 @@ case ${1:-} in
     '') ;;
     --full)
         full=yes
-        fuzz_seconds=600
+        fuzz_seconds=240
         export SIGHTLINE_FULL=1
         ;;
     *)

@@ -6,6 +6,7 @@
 // the order of the files after triangulation. Triangles that can't be drawn keep their number.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -66,6 +67,42 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
+/// What is known of a quadric beside its equation; decides how it is tessellated.
+enum class QuadricKind { general, sphere, cylinder, cone };
+
+/// A surface of the second degree, cut off by a box: the points of the box with value_at() = 0.
+/// Both of its sides can be seen. It has coordinates of its own, in which it is simple.
+struct Quadric {
+    QuadricKind kind = QuadricKind::general;
+    /// From its own coordinates (u, v, w) to the world: affine, not singular.
+    glm::dmat4 frame{1.0};
+    /// Factors of u^2, v^2, w^2, uv, uw, vw, u, v, w and 1.
+    std::array<double, 10> coefficients{};
+    /// In its own coordinates.
+    Box clip{{-1, -1, -1}, {1, 1, 1}};
+
+    [[nodiscard]] double value_at(glm::dvec3 own) const;
+    [[nodiscard]] glm::dvec3 gradient_at(glm::dvec3 own) const;
+};
+
+/// The unit sphere of its own coordinates. Precondition: radius > 0.
+[[nodiscard]] Quadric make_sphere(glm::dvec3 centre, double radius);
+/// Open at both ends; w runs from -1 to 1. Preconditions: radius > 0, from != to.
+[[nodiscard]] Quadric make_cylinder(glm::dvec3 from, glm::dvec3 to, double radius);
+/// From the apex to the rim, open there; w runs from 0 to 1. Preconditions: radius > 0, apex !=
+/// base.
+[[nodiscard]] Quadric make_cone(glm::dvec3 apex, glm::dvec3 base, double radius);
+/// Factors of x^2, y^2, z^2, xy, xz, yz, x, y, z and 1, and the box in which the surface stands.
+/// The box becomes the cube -1..1 of its own coordinates and the largest factor 1.
+/// Preconditions: a factor other than the last is not 0, box.lo < box.hi.
+[[nodiscard]] Quadric make_quadric(const std::array<double, 10>& coefficients, const Box& box);
+/// `by` must be affine.
+[[nodiscard]] Quadric transformed(Quadric quadric, const glm::dmat4& by);
+/// Whether all numbers are finite and of a moderate size, and the frame is not singular.
+[[nodiscard]] bool is_regular(const Quadric& quadric);
+/// A box of the world around it; the smallest one but for QuadricKind::general.
+[[nodiscard]] Box bounds_of(const Quadric& quadric);
+
 /// Faces that are coplanar in the world, clustered once when the scene is finished. The
 /// triangles of a sheet share one plane on every screen, so that walls, decals and the halves of a
 /// quad never fight: where they meet in depth they tie exactly, and the lower id wins.
@@ -115,12 +152,16 @@ struct Scene {
     std::vector<Corners> triangle_colors;
 
     std::vector<Object> objects;  ///< in ascending order of first_triangle, without gaps
+    /// Surfaces that are not polygons. The id of quadric k is triangle_count() + k. Each is an
+    /// object of its own: the last ones of `objects`, in the same order, have no triangles. See
+    /// add_quadric().
+    std::vector<Quadric> quadrics;
     std::vector<Material> materials;
     std::vector<Light> lights;            ///< empty: one headlight
     std::optional<CameraOptions> camera;  ///< from scene.json
 
     // Derived by finish_scene().
-    Box bounds;                            ///< of the positions that triangles use
+    Box bounds;  ///< of the positions that triangles use, and of the quadrics
     std::vector<std::uint8_t> degenerate;  ///< one byte a triangle; empty when none is
     Sheets sheets;
     SceneCounts counts;
@@ -128,14 +169,32 @@ struct Scene {
     [[nodiscard]] std::uint32_t triangle_count() const {
         return static_cast<std::uint32_t>(triangles.size());
     }
-    /// Index of the object that owns a triangle. O(log objects).
-    [[nodiscard]] std::uint32_t object_of(std::uint32_t triangle) const;
+    [[nodiscard]] bool is_quadric(std::uint32_t id) const { return id >= triangles.size(); }
+    /// Index of the object that owns a triangle or a quadric. O(log objects).
+    [[nodiscard]] std::uint32_t object_of(std::uint32_t id) const;
 };
 
 /// Computes what is derived (bounds, degenerate triangles, sheets, closed objects).
 /// Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
 /// does not depend on the number of threads.
 void finish_scene(Scene& scene);
+
+/// Appends a quadric with an object and a material of its own. Precondition: all triangles are in
+/// the scene. finish_scene() is due afterwards.
+void add_quadric(Scene& scene, const Quadric& quadric, const std::string& name,
+                 const Material& material);
+
+/// Segments around a sphere, cylinder or cone in a tessellation.
+inline constexpr std::uint32_t kQuadricSegments = 64;
+
+/// The finished scene with triangles in place of its quadrics; objects and triangles that were
+/// there keep their numbers. All new vertices lie on the surfaces and have their normals. Spheres
+/// get segments / 2 rings; cylinders and cones as many as make about square faces, at most
+/// `segments`. General quadrics are followed by tetrahedra through a lattice of (3/4 segments)^3
+/// cells of their box, so parts thinner than a cell are lost. Precondition: segments >= 4.
+/// O(segments^2) for each special quadric, O(segments^3) for each general one.
+[[nodiscard]] Scene tessellate_quadrics(const Scene& scene,
+                                        std::uint32_t segments = kQuadricSegments);
 
 /// Fills in vertex normals for every triangle whose object has none from its file: the
 /// angle-weighted mean over the faces around a vertex, split where two neighbouring faces meet at

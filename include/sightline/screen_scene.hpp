@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -35,6 +36,26 @@ struct Plane {
     std::int64_t a = 0, b = 0, c = 0;
     ScreenPoint at{};
     friend bool operator==(const Plane&, const Plane&) = default;
+};
+
+/// The rays of a view in a quadric's own coordinates. The one through (x, y) on the screen is, with
+/// dx = x - ScreenQuadrics::cx and dy = y - cy,
+///
+///     ((origin + dx origin_x) + dy origin_y) + depth * ((way + dx way_x) + dy way_y).
+struct ScreenQuadric {
+    glm::dvec3 origin{}, origin_x{}, origin_y{};
+    glm::dvec3 way{}, way_x{}, way_y{};
+    /// Where it can be seen, in units of the screen, ends included; empty when x_min > x_max.
+    std::int32_t x_min = 0, x_max = -1, y_min = 0, y_max = -1;
+};
+
+/// The quadrics of a scene in a view, and what turns a metric depth into z.
+struct ScreenQuadrics {
+    std::vector<ScreenQuadric> rays;  ///< one a quadric of the scene
+    bool perspective = true;
+    double cx = 0, cy = 0;             ///< centre of the picture, in units of the screen
+    double z_offset = 0, z_scale = 0;  ///< z = z_offset + z_scale * (1/depth, or depth)
+    double near_plane = 1, far_plane = 2;
 };
 
 enum class Cull { automatic, none, back, front };
@@ -98,6 +119,13 @@ public:
         return sheet_planes_[sheet];
     }
 
+    // -- quadrics ----------------------------------------------------------------------------
+    // Screen triangles do not include them, and they have no plane: see hit_quadric().
+
+    [[nodiscard]] const ScreenQuadrics& quadrics() const { return quadrics_; }
+    /// Whether an id is that of a quadric: number id - scene().triangle_count().
+    [[nodiscard]] bool is_quadric(std::uint32_t id) const { return scene_->is_quadric(id); }
+
     // -- the view ----------------------------------------------------------------------------
 
     [[nodiscard]] const Scene& scene() const { return *scene_; }
@@ -131,7 +159,19 @@ private:
     std::vector<std::uint32_t> piece_ids_;  // the triangle of each piece, ascending
     std::vector<Plane> sheet_planes_;
     std::unordered_map<std::uint32_t, Plane> clipped_planes_;  // of clipped triangles, by id
+    ScreenQuadrics quadrics_;
 };
+
+/// Where the ray through a point of the screen (x, y in its units) meets quadric k for the first
+/// time, between the near and the far plane and inside of the quadric's box: one fixed sequence of
+/// operations in double precision. This and nothing else says where a quadric is seen.
+struct QuadricHit {
+    std::int32_t z = 0;  ///< on the depth grid: what is compared
+    double depth = 0;    ///< metric
+    glm::dvec3 own{};    ///< in the quadric's own coordinates
+};
+[[nodiscard]] std::optional<QuadricHit> hit_quadric(const ScreenScene& screen, std::uint32_t k,
+                                                    std::int32_t x, std::int32_t y);
 
 /// Transforms, clips and snaps a finished scene. O(positions + triangles), on all cores; the result
 /// does not depend on the number of threads or the vector width.

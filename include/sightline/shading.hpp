@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sightline/image.hpp"
 #include "sightline/screen_scene.hpp"
@@ -27,12 +30,17 @@ enum class Shading {
 
 [[nodiscard]] std::optional<Shading> parse_shading(std::string_view name);
 [[nodiscard]] std::string_view name_of(Shading shading);
+/// Whether normals are interpolated: gouraud and phong.
+[[nodiscard]] bool is_smooth(Shading shading);
 
 struct ShadeOptions {
     Shading shading = Shading::flat;
     glm::vec4 background{1, 1, 1, 1};  ///< linear, premultiplied
     int threads = 0;                   ///< 0 = all cores
 };
+
+// A Visibility that holds a band of a picture gives the rows of that band, with the same values as
+// in the whole picture; it must hold whole rows of pixels.
 
 /// Colours of the samples, averaged (box filter, linear light) over each pixel. gouraud and phong
 /// need Scene::triangle_normals (see make_normals()); where an object has none its faces are flat.
@@ -55,5 +63,48 @@ struct ShadeOptions {
 [[nodiscard]] IdImage triangle_map(const Visibility& visibility);
 [[nodiscard]] IdImage object_map(const ScreenScene& screen, const Visibility& visibility);
 [[nodiscard]] MaskImage mask_map(const Visibility& visibility);
+
+// -- from a projected scene to files -------------------------------------------------------------
+
+enum class PictureContent {
+    color,    ///< png, exr (with depth), npy; shaded as the options say
+    depth,    ///< png, exr, npy
+    ids,      ///< of triangles: png, npy; of objects too: exr
+    normals,  ///< png, exr, npy; interpolated where the shading does
+    mask,     ///< png, npy
+};
+
+/// One file that draw() writes; what is in it is said in sightline/image.hpp.
+struct PictureFile {
+    PictureContent content = PictureContent::color;
+    std::string path;
+    ImageFormat format = ImageFormat::png;
+    bool add_normals = false, add_ids = false;  ///< further layers of a colour EXR
+};
+
+/// What draw() is about to do, on the thread that called it. A PNG is shaded while it is written.
+enum class DrawStage { resolve, shade, write };
+
+struct DrawOptions {
+    std::uint32_t samples_per_axis = 1;  ///< of colours; everything else is that at the centres
+    ShadeOptions shading;
+    /// Appended to, when given: what the algorithm did, for the colours if there are any.
+    std::vector<Counter>* counters = nullptr;
+    /// Called, when set, at every change of stage with the rows of pixels that are done.
+    std::function<void(DrawStage, std::uint32_t rows_done)> on_stage;
+};
+
+/// Resolves, shades and writes one or several files of a view. Where the algorithm makes its
+/// answer in bands, this is done for a group of rows after another, so that memory does not grow
+/// with the height: at most 65,536 pixels a side; the others keep all samples (2^28 at most), but
+/// nothing else of the picture. The bytes are those of resolve(), shade(), the maps and the
+/// write_* functions, whatever the algorithm and the number of threads.
+///
+/// Every group goes to the files in their order; after the last one each is completed before the
+/// next gets its rows, so a stream that stands last is touched when the others are safe, if the
+/// picture is one group. After an error files completed before stay.
+/// Errors: as of resolve() and the write_* functions; bad_option for a mask in an EXR.
+[[nodiscard]] Status draw(const ScreenScene& screen, const Algorithm& algorithm,
+                          const DrawOptions& options, std::span<const PictureFile> files);
 
 }  // namespace sightline

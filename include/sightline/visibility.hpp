@@ -2,7 +2,8 @@
 //
 // The canonical answer at a sample is the triangle that covers it (top-left rule on the snapped
 // edges) with the exactly smallest depth; a tie goes to the lower id. Every algorithm that promises
-// exactness gives it in every sample.
+// exactness gives it in every sample. A quadric takes part with the z of hit_quadric(), in the
+// algorithms that can compute it.
 #pragma once
 
 #include <cstdint>
@@ -34,13 +35,14 @@ struct SampleGrid {
     [[nodiscard]] std::int32_t offset(int subpixel_bits) const { return step(subpixel_bits) / 2; }
 };
 
-/// What is seen at the samples of a grid: ids and depth, row by row from the top; of all rows, or of
-/// a band of a picture that is made in bands.
+/// What is seen at the samples of a grid: ids and depth, row by row from the top; of all rows, or
+/// of a band of a picture that is made in bands.
 struct Visibility {
     SampleGrid grid;
-    AlignedVector<std::uint32_t> ids;  ///< of triangles; kNone where nothing is seen
-    /// z of the winner in units of the depth grid, as stored_depth() gives it; infinity where
-    /// nothing is seen. For lengths in the scene's unit see depth_map().
+    /// Of triangles, or of quadrics, see Scene::quadrics; kNone where nothing is seen.
+    AlignedVector<std::uint32_t> ids;
+    /// z of the winner in units of the depth grid, as stored_depth() gives it, or a quadric's z
+    /// as a float; infinity where nothing is seen. For lengths in the scene's unit see depth_map().
     AlignedVector<float> depth;
     std::uint32_t first_row = 0;  ///< row of the grid with which ids and depth begin
 
@@ -135,6 +137,7 @@ struct Algorithm {
     Space space = Space::image;
     bool exact = true;        ///< promises the canonical answer in every sample
     bool exhaustive = false;  ///< cost grows with samples times triangles: for small scenes
+    bool quadrics = false;    ///< takes quadrics as they are, not tessellated
     /// Exactly one of the two is set: an algorithm makes the whole picture, or any band of it.
     void (*resolve)(const ScreenScene&, const ResolveOptions&, Visibility&) = nullptr;
     std::unique_ptr<RowSource> (*open_rows)(const ScreenScene&, const SampleGrid&,
@@ -147,15 +150,16 @@ struct Algorithm {
 [[nodiscard]] const Algorithm& default_algorithm();
 
 /// The rows of an algorithm that makes them in bands (Algorithm::open_rows is set), for pictures of
-/// up to 65,536 samples a side. options.observer and .counters must outlive the source.
-/// Error (bad_option): samples_per_axis as for resolve(); the algorithm needs the whole picture.
+/// up to 65,536 pixels a side. options.observer and .counters must outlive the source.
+/// Error (bad_option): samples_per_axis and quadrics as for resolve(); the algorithm needs the
+/// whole picture.
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm,
                                                            const ScreenScene& screen,
                                                            const ResolveOptions& options);
 
 /// Runs an algorithm into `out`, whose memory is reused when it has the right size.
 /// Error (bad_option): samples_per_axis is not a power of two up to 16, or the grid is larger than
-/// 2^28 samples.
+/// 2^28 samples; the scene has quadrics and the algorithm takes none: tessellate_quadrics().
 [[nodiscard]] Status resolve(const Algorithm& algorithm, const ScreenScene& screen,
                              const ResolveOptions& options, Visibility& out);
 

@@ -68,6 +68,19 @@ Imf::Header header_of(std::uint32_t width, std::uint32_t height, const ExrChanne
     return header;
 }
 
+/// As many threads as the application has given to OpenEXR's pool (none unless it asks), and no
+/// more than kBufferBytes allow: for each it keeps two blocks of 16 rows, each of them about three
+/// times, plain and compressed.
+int threads_for(std::uint32_t width, const ExrChannels& channels) {
+    constexpr std::uint64_t kBufferBytes = std::uint64_t{96} << 20, kPerThread = 2 * 3 * 16;
+    const std::uint64_t pixel = (channels.color ? 8u : 0u) + (channels.depth ? 4u : 0u) +
+                                (channels.normals ? 12u : 0u) + (channels.objects ? 4u : 0u) +
+                                (channels.triangles ? 4u : 0u);
+    const std::uint64_t most =
+        kBufferBytes / std::max<std::uint64_t>(1, kPerThread * pixel * width);
+    return static_cast<int>(std::min(most, static_cast<std::uint64_t>(Imf::globalThreadCount())));
+}
+
 Error exr_error(const std::string& path, std::string_view cause) {
     return {ErrorKind::bad_option,
             fmt::format("cannot write '{}': {}; choose another size or format", path, cause)};
@@ -78,8 +91,7 @@ Error exr_error(const std::string& path, std::string_view cause) {
 struct ExrWriter::State {
     State(AtomicFile target, std::uint32_t w, std::uint32_t h, const ExrChannels& channels)
         : stream(std::move(target)), width(w) {
-        // As many threads as the application has given to OpenEXR's pool (none unless it asks).
-        output.emplace(stream, header_of(w, h, channels), Imf::globalThreadCount());
+        output.emplace(stream, header_of(w, h, channels), threads_for(w, channels));
     }
 
     /// The file's error when it has one, else OpenEXR's.

@@ -23,7 +23,7 @@ Status write_png(const std::string& path, const Image<T>& image, PngLayout layou
             convert(image.row(first + i), out + i * row_bytes);
         }
     };
-    if (Status written = writer->write_all(source, 0); !written) return written;
+    if (Status written = writer->write_rows(source, image.height, 0); !written) return written;
     return writer->finish();
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <utility>
 #include <vector>
@@ -86,24 +87,60 @@ struct PngWriter::State {
         write_chunk("IDAT", kZlibHeader);
     }
 
-    Status append(const PngBand& band) {
+    void append(const PngBand& band) {
         write_chunk("IDAT", band.data);
         adler = static_cast<std::uint32_t>(
             adler32_combine(adler, band.adler, static_cast<z_off_t>(band.decoded_size)));
         ++bands_written;
-        return file.status();
     }
 
-    Status encode_and_append(std::span<const std::uint8_t> rows) {
-        return append(encoder.encode(rows, shape));
-    }
+    void write_bands(const PngRowSource& source, std::uint32_t end, int threads);
 
     AtomicFile file;
     PngShape shape;
-    std::uint32_t adler = 1, bands_written = 0;
+    std::uint32_t adler = 1, bands_written = 0, rows_taken = 0;
     std::vector<std::uint8_t> waiting;  // rows of a band that is not complete
-    PngBandEncoder encoder;
 };
+
+/// Writes the bands before `end` that are not written yet; the first of them may have rows waiting.
+void PngWriter::State::write_bands(const PngRowSource& source, std::uint32_t end, int threads) {
+    struct Scratch {
+        std::vector<std::uint8_t> rows;
+        PngBandEncoder encoder;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratches;
+    std::atomic<bool> failed = false;
+    std::uint32_t next = bands_written;
+    const auto number = [&](tbb::flow_control& control) {
+        if (next == end || failed) control.stop();
+        return next++;
+    };
+    const auto encode = [&](std::uint32_t band) {
+        Scratch& scratch = scratches.local();
+        const std::uint32_t first = band * shape.rows_per_band();
+        const std::uint32_t held = first < rows_taken ? rows_taken - first : 0;
+        scratch.rows.resize(shape.rows_of_band(band) * shape.bytes_per_row());
+        if (held > 0) std::ranges::copy(waiting, scratch.rows.begin());
+        source(first + held, shape.rows_of_band(band) - held,
+               scratch.rows.data() + held * shape.bytes_per_row());
+        return std::make_shared<PngBand>(scratch.encoder.encode(scratch.rows, shape));
+    };
+    const auto write = [&](const std::shared_ptr<PngBand>& band) {
+        append(*band);
+        failed = !file.status();
+    };
+    in_arena(threads, [&] {
+        const auto in_flight =
+            2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+        using tbb::filter_mode;
+        tbb::parallel_pipeline(
+            in_flight, tbb::make_filter<void, std::uint32_t>(filter_mode::serial_in_order, number) &
+                           tbb::make_filter<std::uint32_t, std::shared_ptr<PngBand>>(
+                               filter_mode::parallel, encode) &
+                           tbb::make_filter<std::shared_ptr<PngBand>, void>(
+                               filter_mode::serial_in_order, write));
+    });
+}
 
 PngWriter::PngWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 PngWriter::PngWriter(PngWriter&&) noexcept = default;
@@ -132,61 +169,31 @@ Result<PngWriter> PngWriter::create(const std::string& path, std::uint32_t width
 }
 
 Status PngWriter::write_rows(std::span<const std::uint8_t> rows) {
-    State& s = *state_;
-    const std::size_t row_bytes = s.shape.bytes_per_row();
+    const std::size_t row_bytes = bytes_per_row();
     assert(rows.size() % row_bytes == 0);
-    while (!rows.empty() && s.bands_written < s.shape.bands()) {
-        const std::size_t wanted = s.shape.rows_of_band(s.bands_written) * row_bytes;
-        const std::size_t taken = std::min(rows.size(), wanted - s.waiting.size());
-        if (taken == wanted) {
-            if (Status done = s.encode_and_append(rows.first(taken)); !done) return done;
-        } else {
-            s.waiting.insert(s.waiting.end(), rows.begin(),
-                             rows.begin() + static_cast<std::ptrdiff_t>(taken));
-            if (s.waiting.size() == wanted) {
-                if (Status done = s.encode_and_append(s.waiting); !done) return done;
-                s.waiting.clear();
-            }
-        }
-        rows = rows.subspan(taken);
-    }
-    return s.file.status();
+    const std::uint32_t begin = state_->rows_taken;
+    const auto source = [&](std::uint32_t first, std::uint32_t count, std::uint8_t* out) {
+        std::copy_n(rows.data() + (first - begin) * row_bytes, count * row_bytes, out);
+    };
+    return write_rows(source, static_cast<std::uint32_t>(rows.size() / row_bytes), 1);
 }
 
-Status PngWriter::write_all(const PngRowSource& source, int threads) {
+Status PngWriter::write_rows(const PngRowSource& source, std::uint32_t count, int threads) {
     State& s = *state_;
-    assert(s.bands_written == 0 && s.waiting.empty());
-    struct Scratch {
-        std::vector<std::uint8_t> rows;
-        PngBandEncoder encoder;
-    };
-    tbb::enumerable_thread_specific<Scratch> scratches;
-    std::uint32_t next = 0;
-    const auto number = [&](tbb::flow_control& control) {
-        if (next == s.shape.bands() || !s.file.status()) control.stop();
-        return next++;
-    };
-    const auto encode = [&](std::uint32_t band) {
-        Scratch& scratch = scratches.local();
-        const std::uint32_t count = s.shape.rows_of_band(band);
-        scratch.rows.resize(count * s.shape.bytes_per_row());
-        source(band * s.shape.rows_per_band(), count, scratch.rows.data());
-        return std::make_shared<PngBand>(scratch.encoder.encode(scratch.rows, s.shape));
-    };
-    const auto append = [&](const std::shared_ptr<PngBand>& band) {
-        static_cast<void>(s.append(*band));  // a failure stops the numbers
-    };
-    in_arena(threads, [&] {
-        const auto in_flight =
-            2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-        using tbb::filter_mode;
-        tbb::parallel_pipeline(
-            in_flight, tbb::make_filter<void, std::uint32_t>(filter_mode::serial_in_order, number) &
-                           tbb::make_filter<std::uint32_t, std::shared_ptr<PngBand>>(
-                               filter_mode::parallel, encode) &
-                           tbb::make_filter<std::shared_ptr<PngBand>, void>(
-                               filter_mode::serial_in_order, append));
-    });
+    const std::uint32_t end = s.rows_taken + count, per_band = s.shape.rows_per_band();
+    assert(end <= s.shape.height);
+    const std::uint32_t complete = end == s.shape.height ? s.shape.bands() : end / per_band;
+    if (s.bands_written < complete) {
+        s.write_bands(source, complete, threads);
+        s.waiting.clear();
+    }
+    const std::uint32_t rest = std::max(s.rows_taken, std::min(end, complete * per_band));
+    if (rest < end) {
+        const std::size_t held = s.waiting.size();
+        s.waiting.resize(held + (end - rest) * s.shape.bytes_per_row());
+        source(rest, end - rest, s.waiting.data() + held);
+    }
+    s.rows_taken = end;
     return s.file.status();
 }
 

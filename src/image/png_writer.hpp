@@ -24,7 +24,8 @@ enum class PngContent {
     data,   ///< numbers: no statement on colour
 };
 
-/// Makes the bytes of rows first .. first + count - 1, in `out`. Called by several threads at once.
+/// Makes the bytes of rows first .. first + count - 1 of the picture, in `out`. Called by several
+/// threads at once.
 using PngRowSource =
     std::function<void(std::uint32_t first, std::uint32_t count, std::uint8_t* out)>;
 
@@ -44,9 +45,9 @@ public:
     [[nodiscard]] std::size_t bytes_per_row() const;
     /// Appends whole rows: `rows` has a multiple of bytes_per_row() bytes. On this thread.
     Status write_rows(std::span<const std::uint8_t> rows);
-    /// Writes the whole picture: its bands are made and compressed in parallel (threads: 0 = all
-    /// cores) and written in order. Precondition: no rows are written yet.
-    Status write_all(const PngRowSource& source, int threads);
+    /// Appends the next `count` rows: their bands are made and compressed in parallel (threads: 0 =
+    /// all cores) and written in order. A band that they begin, but do not complete, waits.
+    Status write_rows(const PngRowSource& source, std::uint32_t count, int threads);
     /// Precondition: all rows are written.
     Status finish();
 

@@ -137,13 +137,31 @@ void append_copy(Scene& scene, const Scene& part, glm::dvec3 offset) {
     append(scene.normals, part.normals);
     append(scene.colors, part.colors);
     append(scene.polygon_edges, part.polygon_edges);
-    for (Object object : part.objects) {
+    const std::size_t meshes = part.objects.size() - part.quadrics.size();
+    for (std::size_t o = 0; o < meshes; ++o) {
+        Object object = part.objects[o];
         object.first_triangle += first_triangle;
         object.first_polygon += first_polygon;
         scene.objects.push_back(std::move(object));
     }
     scene.counts.concave_polygons += part.counts.concave_polygons;
     scene.counts.ignored_primitives += part.counts.ignored_primitives;
+}
+
+/// Appends the quadrics of `part`, moved by `offset`: they come after all triangles.
+void append_quadrics(Scene& scene, const Scene& part, glm::dvec3 offset) {
+    const std::size_t first = part.objects.size() - part.quadrics.size();
+    for (std::size_t k = 0; k < part.quadrics.size(); ++k) {
+        Quadric quadric = part.quadrics[k];
+        quadric.frame[3] += glm::dvec4(offset, 0);
+        Object object = part.objects[first + k];
+        object.first_triangle = scene.triangle_count();
+        object.first_polygon = scene.objects.empty() ? 0
+                                                     : scene.objects.back().first_polygon +
+                                                           scene.objects.back().polygon_count;
+        scene.objects.push_back(std::move(object));
+        scene.quadrics.push_back(quadric);
+    }
 }
 
 /// A linear congruential generator (Knuth's MMIX), for numbers that are the same everywhere.
@@ -233,6 +251,10 @@ Result<Scene> repeat(const Scene& scene, const RepeatOptions& options) {
     for (std::uint32_t i = 0; i < options.copies; ++i) {
         const std::uint32_t moved = options.farthest_first ? options.copies - 1 - i : i;
         append_copy(result, scene, static_cast<double>(moved) * options.step);
+    }
+    for (std::uint32_t i = 0; i < options.copies; ++i) {
+        const std::uint32_t moved = options.farthest_first ? options.copies - 1 - i : i;
+        append_quadrics(result, scene, static_cast<double>(moved) * options.step);
     }
     finish_scene(result);
     return result;

@@ -58,6 +58,13 @@ Box bounds_of_triangles(const Scene& scene) {
     return box;
 }
 
+void add_quadrics(const std::vector<Quadric>& quadrics, Box& box) {
+    for (const Quadric& quadric : quadrics) {
+        const Box own = bounds_of(quadric);
+        box = box.empty() ? own : Box{glm::min(box.lo, own.lo), glm::max(box.hi, own.hi)};
+    }
+}
+
 void find_degenerate(Scene& scene) {
     scene.degenerate.assign(scene.triangles.size(), 0);
     tbb::parallel_for(Range(0, scene.triangle_count()), [&](const Range& range) {
@@ -72,8 +79,9 @@ void find_degenerate(Scene& scene) {
     if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
 }
 
-/// What is derived, after the bounds.
+/// What is derived, after the bounds of the triangles.
 void derive(Scene& scene, bool joined) {
+    add_quadrics(scene.quadrics, scene.bounds);
     find_degenerate(scene);
     scene.counts.polygons =
         std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
@@ -84,10 +92,12 @@ void derive(Scene& scene, bool joined) {
 
 }  // namespace
 
-std::uint32_t Scene::object_of(std::uint32_t triangle) const {
-    assert(triangle < triangle_count() && !objects.empty());
+std::uint32_t Scene::object_of(std::uint32_t id) const {
+    assert(id < triangle_count() + quadrics.size() && !objects.empty());
+    if (is_quadric(id))
+        return static_cast<std::uint32_t>(objects.size() - quadrics.size()) + id - triangle_count();
     // The last object that begins at or before the triangle: empty ones stand before it.
-    const auto after = std::ranges::upper_bound(objects, triangle, {}, &Object::first_triangle);
+    const auto after = std::ranges::upper_bound(objects, id, {}, &Object::first_triangle);
     return static_cast<std::uint32_t>(after - objects.begin()) - 1;
 }
 

@@ -49,6 +49,11 @@ void RowShader::shade_rgba8(std::uint32_t y, FaceCache& cache, Rgba8* out) const
     shade_as(y, cache, out);
 }
 
+/// Where a row of samples stands, in units of the screen; rows count from the first one held.
+std::int32_t RowShader::height_of(std::uint32_t row) const {
+    return static_cast<std::int32_t>(visibility_.first_row + row) * step_ + offset_;
+}
+
 template <class Out>
 void RowShader::shade_as(std::uint32_t y, FaceCache& cache, Out* out) const {
     const std::uint32_t width = visibility_.grid.resolution.width;
@@ -57,6 +62,7 @@ void RowShader::shade_as(std::uint32_t y, FaceCache& cache, Out* out) const {
         return;
     }
     const std::uint32_t* ids = visibility_.ids.data() + std::size_t{y} * width;
+    const std::int32_t height = height_of(y);
     for (std::uint32_t x = 0; x < width;) {
         const std::uint32_t id = ids[x], first = x;
         while (x < width && ids[x] == id) ++x;
@@ -67,9 +73,8 @@ void RowShader::shade_as(std::uint32_t y, FaceCache& cache, Out* out) const {
         }
         const ShadedFace& face = cache.face(id);
         for (std::uint32_t i = first; i < x; ++i) {
-            out[i] = color_as<Out>(
-                shader_.varying_color(face, static_cast<std::int32_t>(i) * step_ + offset_,
-                                      static_cast<std::int32_t>(y) * step_ + offset_));
+            out[i] = color_as<Out>(shader_.varying_color(
+                face, static_cast<std::int32_t>(i) * step_ + offset_, height));
         }
     }
 }
@@ -80,9 +85,8 @@ glm::vec4 RowShader::sample(std::uint32_t column, std::uint32_t row, FaceCache& 
         visibility_.ids[std::size_t{row} * visibility_.grid.columns() + column];
     if (id == kNone) return background_.linear;
     if (const PixelColor* constant = cache.constant_color(id)) return constant->linear;
-    return shader_.varying_color(cache.face(id),
-                                 static_cast<std::int32_t>(column) * step_ + offset_,
-                                 static_cast<std::int32_t>(row) * step_ + offset_);
+    return shader_.varying_color(
+        cache.face(id), static_cast<std::int32_t>(column) * step_ + offset_, height_of(row));
 }
 
 /// Box filter. The order of summation is fixed: row by row within the pixel.

@@ -11,8 +11,9 @@
 
 namespace sightline {
 
-/// Shades the rows of one picture. Read-only once made, so any number of threads may use it, each
-/// with a cache of its own. The scene and the visibility must outlive it.
+/// Shades the rows of pixels that a visibility holds, counted from its first one; it may come to
+/// hold others. Read-only once made, so any number of threads may use it, each with a cache of its
+/// own. The scene and the visibility must outlive it.
 class RowShader {
 public:
     RowShader(const ScreenScene& screen, const Visibility& visibility, const ShadeOptions& options);
@@ -26,6 +27,7 @@ public:
 private:
     template <class Out>
     void shade_as(std::uint32_t y, FaceCache& cache, Out* out) const;
+    [[nodiscard]] std::int32_t height_of(std::uint32_t row) const;
     [[nodiscard]] glm::vec4 sample(std::uint32_t column, std::uint32_t row, FaceCache& cache) const;
     [[nodiscard]] glm::vec4 mean(std::uint32_t x, std::uint32_t y, FaceCache& cache) const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "shading/id_colors.hpp"
+#include "shading/quadric_surface.hpp"
 #include "sightline/visibility.hpp"
 
 namespace sightline {
@@ -28,6 +29,11 @@ glm::vec3 color_of_normal(glm::dvec3 n) {
             component_of(0.5 * (n.z + 1))};
 }
 
+glm::vec3 color_of_depth(const Camera& camera, double depth) {
+    const double range = camera.far_plane - camera.near_plane;
+    return glm::vec3(component_of((depth - camera.near_plane) / range));
+}
+
 Reflection mix(const std::array<Reflection, 3>& light, glm::vec3 b) {
     return {b.x * light[0].diffuse + b.y * light[1].diffuse + b.z * light[2].diffuse,
             b.x * light[0].specular + b.y * light[1].specular + b.z * light[2].specular};
@@ -44,6 +50,10 @@ SampleShader::SampleShader(const ScreenScene& screen, Shading shading)
 void SampleShader::prepare(std::uint32_t id, ShadedFace& face) const {
     face.id = id;
     face.constant = false;
+    if (screen_.is_quadric(id) && shading_ != Shading::ids) {
+        prepare_quadric(id, face);
+        return;
+    }
     switch (shading_) {
         case Shading::ids:
             face.constant = true;
@@ -87,6 +97,22 @@ void SampleShader::prepare_lit(std::uint32_t id, ShadedFace& face) const {
     if (face.constant) face.color = glm::vec4(face.light[0].on(surface.material->base_color), 1.0f);
 }
 
+void SampleShader::prepare_quadric(std::uint32_t id, ShadedFace& face) const {
+    face.surface.material = &material_of(screen_.scene(), id);
+    face.constant = shading_ == Shading::unlit;
+    if (face.constant) face.color = glm::vec4(face.surface.material->base_color, 1.0f);
+}
+
+/// With the exact normal of the point, whatever the kind of shading.
+glm::vec3 SampleShader::quadric_color(const ShadedFace& face, std::int32_t x,
+                                      std::int32_t y) const {
+    const QuadricPoint point = quadric_point(screen_, face.id, x, y);
+    if (shading_ == Shading::depth) return color_of_depth(screen_.camera(), point.depth);
+    if (shading_ == Shading::normals) return color_of_normal(point.normal);
+    const Material& material = *face.surface.material;
+    return lighting_.reflect(point.position, point.normal, material).on(material.base_color);
+}
+
 glm::vec3 SampleShader::base_color(const Surface& surface, glm::dvec3 barycentrics) const {
     if (!surface.colored) return surface.material->base_color;
     const glm::vec3 b(barycentrics);
@@ -95,14 +121,12 @@ glm::vec3 SampleShader::base_color(const Surface& surface, glm::dvec3 barycentri
 }
 
 glm::vec3 SampleShader::depth_color(const ShadedFace& face, std::int32_t x, std::int32_t y) const {
-    const Camera& camera = screen_.camera();
-    const double depth = screen_.metric_depth(evaluate_depth(face.plane, x, y));
-    const double range = camera.far_plane - camera.near_plane;
-    return glm::vec3(component_of((depth - camera.near_plane) / range));
+    return color_of_depth(screen_.camera(), screen_.metric_depth(evaluate_depth(face.plane, x, y)));
 }
 
 glm::vec4 SampleShader::varying_color(const ShadedFace& face, std::int32_t x,
                                       std::int32_t y) const {
+    if (screen_.is_quadric(face.id)) return {quadric_color(face, x, y), 1.0f};
     if (shading_ == Shading::depth) return {depth_color(face, x, y), 1.0f};
     const Surface& surface = face.surface;
     const glm::dvec3 b = surface.barycentrics.at(glm::dvec2(x, y) * pixels_per_unit_of_screen_);

@@ -15,14 +15,14 @@
 
 namespace sightline {
 
-/// A triangle prepared for one kind of shading.
+/// A triangle or quadric prepared for one kind of shading.
 struct ShadedFace {
     std::uint32_t id = kNone;
     bool constant = false;            ///< every sample has `color`
     glm::vec4 color{0, 0, 0, 0};      ///< premultiplied
     std::array<Reflection, 3> light;  ///< flat: the first; gouraud: at the corners
-    Surface surface;
-    Plane plane;  ///< depth only
+    Surface surface;                  ///< of a quadric: the material only
+    Plane plane;                      ///< depth only
 };
 
 /// Shades samples of a screen. Read-only once made, so any number of threads may use it.
@@ -40,6 +40,9 @@ private:
     [[nodiscard]] glm::vec3 depth_color(const ShadedFace& face, std::int32_t x,
                                         std::int32_t y) const;
     void prepare_lit(std::uint32_t id, ShadedFace& face) const;
+    void prepare_quadric(std::uint32_t id, ShadedFace& face) const;
+    [[nodiscard]] glm::vec3 quadric_color(const ShadedFace& face, std::int32_t x,
+                                          std::int32_t y) const;
 
     const ScreenScene& screen_;
     Shading shading_;

@@ -40,20 +40,22 @@ std::string_view name_of(Shading shading) {
     return found == kNames.end() ? std::string_view{} : found->first;
 }
 
+bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading == Shading::phong; }
+
 ColorImage shade(const ScreenScene& screen, const Visibility& visibility,
                  const ShadeOptions& options) {
-    const Resolution size = visibility.grid.resolution;
-    ColorImage image(size.width, size.height);
+    ColorImage image(visibility.grid.resolution.width,
+                     visibility.rows() / visibility.grid.per_axis);
     const RowShader shader(screen, visibility, options);
     tbb::enumerable_thread_specific<FaceCache> caches([&] { return shader.make_cache(); });
     // Blocks of rows are tall enough for the caches to serve a triangle more than once.
     constexpr std::uint32_t kGrain = 16;
     in_arena(options.threads, [&] {
-        const tbb::blocked_range<std::uint32_t> all(0, size.height, kGrain);
+        const tbb::blocked_range<std::uint32_t> all(0, image.height, kGrain);
         tbb::parallel_for(all, [&](const auto& range) {
             FaceCache& cache = caches.local();
             for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
-                shader.shade(y, cache, image.pixels.data() + std::size_t{y} * size.width);
+                shader.shade(y, cache, image.pixels.data() + std::size_t{y} * image.width);
             }
         });
     });
@@ -62,9 +64,10 @@ ColorImage shade(const ScreenScene& screen, const Visibility& visibility,
 
 Status write_shaded_png(const std::string& path, const ScreenScene& screen,
                         const Visibility& visibility, const ShadeOptions& options) {
-    const Resolution size = visibility.grid.resolution;
+    const std::uint32_t width = visibility.grid.resolution.width,
+                        height = visibility.rows() / visibility.grid.per_axis;
     Result<PngWriter> writer =
-        PngWriter::create(path, size.width, size.height, PngLayout::rgba8, PngContent::color);
+        PngWriter::create(path, width, height, PngLayout::rgba8, PngContent::color);
     if (!writer) return writer.error();
     const RowShader shader(screen, visibility, options);
     tbb::enumerable_thread_specific<FaceCache> caches([&] { return shader.make_cache(); });
@@ -72,10 +75,11 @@ Status write_shaded_png(const std::string& path, const ScreenScene& screen,
         FaceCache& cache = caches.local();
         auto* pixels = reinterpret_cast<std::array<std::uint8_t, 4>*>(out);
         for (std::uint32_t i = 0; i < count; ++i) {
-            shader.shade_rgba8(first + i, cache, pixels + std::size_t{i} * size.width);
+            shader.shade_rgba8(first + i, cache, pixels + std::size_t{i} * width);
         }
     };
-    if (Status written = writer->write_all(source, options.threads); !written) return written;
+    if (Status written = writer->write_rows(source, height, options.threads); !written)
+        return written;
     return writer->finish();
 }
 

@@ -45,14 +45,14 @@ glm::dvec3 facing_normal(const Camera& camera, const std::array<glm::dvec3, 3>& 
 /// from the viewer, must not jump to the other.
 glm::dvec3 on_side_of(glm::dvec3 face, glm::dvec3 n) { return glm::dot(n, face) < 0 ? -n : n; }
 
+}  // namespace
+
 const Material& material_of(const Scene& scene, std::uint32_t id) {
     static const Material kDefault;
     if (scene.objects.empty()) return kDefault;
     const std::uint32_t material = scene.objects[scene.object_of(id)].material;
     return material < scene.materials.size() ? scene.materials[material] : kDefault;
 }
-
-}  // namespace
 
 BarycentricMap::BarycentricMap(const Camera& camera, const std::array<glm::dvec3, 3>& corners) {
     std::array<glm::dvec3, 3> v;

@@ -47,6 +47,9 @@ struct Surface {
     std::array<glm::vec3, 3> colors;  ///< of the vertices, when colored
 };
 
+/// That of the object of a triangle or quadric; the default one where none is named.
+[[nodiscard]] const Material& material_of(const Scene& scene, std::uint32_t id);
+
 /// What a triangle (by id) is, without what changes within it.
 [[nodiscard]] Surface make_surface(const ScreenScene& screen, std::uint32_t id);
 

@@ -13,6 +13,7 @@
 #include "sightline/screen_scene.hpp"
 #include "view/clip.hpp"
 #include "view/facing.hpp"
+#include "view/quadric.hpp"
 #include "view/shared_planes.hpp"
 #include "view/transform.hpp"
 #include "view/vertex_stage.hpp"
@@ -55,6 +56,7 @@ public:
         mark_triangles();
         clip_marked();
         make_sheet_planes();
+        make_screen_quadrics(scene().quadrics, screen_.camera_, transform_, screen_.quadrics_);
     }
 
 private:

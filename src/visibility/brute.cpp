@@ -5,8 +5,9 @@
 //
 // How this version differs: at each sample every triangle is asked, in integers only: is the sample
 // covered (top-left rule), and is the depth, a rational number, smaller than that of the best so
-// far (or equal, with a lower id). No approximation, no cleverness that could be wrong. The one
-// liberty: triangles that do not reach a row of samples are not asked again at each sample of it.
+// far (or equal, with a lower id). Then every quadric is asked for its z. No approximation, no
+// cleverness that could be wrong. The one liberty: triangles that do not reach a row of samples are
+// not asked again at each sample of it.
 // Time O(rows * triangles + samples * triangles of the row), memory O(triangles) a thread.
 #include <algorithm>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "math/predicates.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/parallel.hpp"
+#include "visibility/quadrics.hpp"
 
 namespace sightline {
 
@@ -59,6 +61,23 @@ std::uint32_t nearest_at(const ScreenScene& screen, const std::vector<Candidate>
     return best;
 }
 
+/// The winner at a sample, and its depth.
+struct Winner {
+    std::uint32_t id = kNone;
+    float depth = std::numeric_limits<float>::infinity();
+};
+
+Winner winner_at(const ScreenScene& screen, std::uint32_t triangle, std::int32_t x,
+                 std::int32_t y) {
+    const auto quadric = nearest_quadric(screen, x, y);
+    if (triangle == kNone)
+        return quadric ? Winner{quadric->id, static_cast<float>(quadric->z)} : Winner{};
+    const Plane plane = screen.plane(triangle);
+    if (quadric && is_before_triangle(quadric->z, plane, x, y))
+        return {quadric->id, static_cast<float>(quadric->z)};
+    return {triangle, stored_depth(plane, x, y)};
+}
+
 }  // namespace
 
 void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Visibility& out) {
@@ -72,11 +91,11 @@ void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Vis
         const std::vector<Candidate> row = triangles_of_row(screen, y);
         for (std::uint32_t i = 0; i < grid.columns(); ++i) {
             const std::int32_t x = offset + static_cast<std::int32_t>(i) * step;
-            const std::uint32_t id = nearest_at(screen, row, x, y, comparisons[j]);
+            const std::uint32_t triangle = nearest_at(screen, row, x, y, comparisons[j]);
+            const auto [id, depth] = winner_at(screen, triangle, x, y);
             const std::size_t at = std::size_t{j} * grid.columns() + i;
             out.ids[at] = id;
-            out.depth[at] = id == kNone ? std::numeric_limits<float>::infinity()
-                                        : stored_depth(screen.plane(id), x, y);
+            out.depth[at] = depth;
             if (options.observer != nullptr)
                 options.observer->step({StepKind::sample_decided, id, kNone, i, j, i + 1, j + 1});
         }

@@ -6,6 +6,7 @@
 #include "sightline/visibility.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/parallel.hpp"
+#include "visibility/quadrics.hpp"
 
 namespace sightline {
 
@@ -13,6 +14,19 @@ namespace {
 
 constexpr std::uint32_t kMaxSamplesPerAxis = 16;
 constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;
+
+/// An algorithm for triangles, with the quadrics offered after it.
+template <auto Resolve>
+void with_quadrics(const ScreenScene& screen, const ResolveOptions& options, Visibility& out) {
+    Resolve(screen, options, out);
+    offer_quadrics(screen, options, out);
+}
+
+template <OpenRows Open>
+std::unique_ptr<RowSource> rows_with_quadrics(const ScreenScene& screen, const SampleGrid& grid,
+                                              const ResolveOptions& options) {
+    return offer_quadrics(screen, grid, options, Open(screen, grid, options));
+}
 
 constexpr std::array kAlgorithms{
     Algorithm{.name = "zbuffer",
@@ -22,13 +36,15 @@ constexpr std::array kAlgorithms{
               .space = Space::image,
               .exact = true,
               .exhaustive = false,
-              .resolve = resolve_zbuffer},
+              .quadrics = true,
+              .resolve = with_quadrics<resolve_zbuffer>},
     Algorithm{.name = "scanline-zbuffer",
               .title = "scan-line z-buffer",
               .citation = "A. Watt, Fundamentals of Three-Dimensional Computer Graphics, 1989",
               .help = "one row of depth, used again for every row; for pictures of any height",
               .space = Space::image,
-              .open_rows = open_scanline_zbuffer},
+              .quadrics = true,
+              .open_rows = rows_with_quadrics<open_scanline_zbuffer>},
     Algorithm{.name = "scanline",
               .title = "scan-line",
               .citation = "C. Wylie, G. Romney, D. Evans, A. Erdahl, Half-Tone Perspective "
@@ -56,6 +72,7 @@ constexpr std::array kAlgorithms{
               .space = Space::image,
               .exact = true,
               .exhaustive = true,
+              .quadrics = true,
               .resolve = resolve_brute},
 };
 
@@ -85,6 +102,13 @@ Status check_samples(const ScreenScene& screen, std::uint32_t n) {
                  "samples per axis must be a power of two, at most 16: use 1, 2, 4, 8 or 16"};
 }
 
+Status check_surfaces(const Algorithm& algorithm, const ScreenScene& screen) {
+    if (algorithm.quadrics || screen.quadrics().rays.empty()) return success();
+    return Error{ErrorKind::bad_option, std::string(algorithm.name) +
+                                            " takes triangles only: tessellate the quadrics, or "
+                                            "use zbuffer"};
+}
+
 void resolve_bands(RowSource& rows, const ResolveOptions& options, Visibility& out) {
     const std::size_t band = std::size_t{rows.band_rows()} * out.grid.columns();
     const std::uint32_t bands = (out.grid.rows() + rows.band_rows() - 1) / rows.band_rows();
@@ -100,6 +124,7 @@ Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm, const S
                                              const ResolveOptions& options) {
     if (Status valid = check_samples(screen, options.samples_per_axis); !valid)
         return valid.error();
+    if (Status valid = check_surfaces(algorithm, screen); !valid) return valid.error();
     if (algorithm.open_rows == nullptr)
         return Error{ErrorKind::bad_option,
                      std::string(algorithm.name) + " needs the whole picture in memory"};
@@ -109,6 +134,7 @@ Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm, const S
 Status resolve(const Algorithm& algorithm, const ScreenScene& screen, const ResolveOptions& options,
                Visibility& out) {
     if (Status valid = check_samples(screen, options.samples_per_axis); !valid) return valid;
+    if (Status valid = check_surfaces(algorithm, screen); !valid) return valid;
     out.grid = {screen.resolution(), options.samples_per_axis};
     if (out.grid.count() > kMaxSamples)
         return Error{ErrorKind::bad_option,

@@ -183,8 +183,18 @@ TEST(Png, BytesDoNotDependOnCallsOrThreads) {
         const auto source = [&](std::uint32_t first, std::uint32_t count, std::uint8_t* out) {
             std::memcpy(out, rows.data() + first * row_bytes, count * row_bytes);
         };
-        ASSERT_TRUE(writer->write_all(source, threads).ok() && writer->finish().ok());
+        ASSERT_TRUE(writer->write_rows(source, height, threads).ok() && writer->finish().ok());
         EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("2.png")));
+        // A band has 65 rows: groups that end inside of one, at its end, and reach over several.
+        for (const std::uint32_t group : {1u, 64u, 65u, 66u, 200u}) {
+            auto grouped = create("3.png");
+            ASSERT_TRUE(grouped.ok());
+            for (std::uint32_t y = 0; y < height; y += group) {
+                ASSERT_TRUE(grouped->write_rows(source, std::min(group, height - y), threads).ok());
+            }
+            ASSERT_TRUE(grouped->finish().ok());
+            EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("3.png"))) << group;
+        }
     }
 }
 

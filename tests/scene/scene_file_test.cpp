@@ -48,11 +48,11 @@ SceneDescription parsed(const std::string& text) {
 TEST(SceneFile, ErrorsNameTheKey) {
     EXPECT_EQ(error_in("{}"), "scene.json: models: missing");
     EXPECT_EQ(error_in("[]"),
-              "scene.json: expected an object with the keys models, lights, camera");
+              "scene.json: expected an object with the keys models, surfaces, lights, camera");
     EXPECT_EQ(error_in(R"({"models": []})"), "scene.json: models: expected at least one model");
     EXPECT_EQ(error_in(R"({"models": {}})"), "scene.json: models: expected a list");
     EXPECT_EQ(error_in(R"({"modles": []})"),
-              "scene.json: modles: unknown key; known ones are models, lights, camera");
+              "scene.json: modles: unknown key; known ones are models, surfaces, lights, camera");
     EXPECT_EQ(error_in(R"({"models": [{"name": "x"}]})"), "scene.json: models[0].path: missing");
     EXPECT_EQ(error_in(R"({"models": [{"path": 7}]})"),
               "scene.json: models[0].path: expected a string");
@@ -102,6 +102,84 @@ TEST(SceneFile, ErrorsOfLightsAndCameras) {
               std::string::npos);
     EXPECT_NE(error_in(in_camera(R"("ortho_height": 1)")).find("camera.ortho_height: unknown key"),
               std::string::npos);
+}
+
+std::string in_surface(const std::string& members) {
+    return R"({"surfaces": [{)" + members + "}]}";
+}
+
+TEST(SceneFile, ErrorsOfSurfaces) {
+    const std::string where = "scene.json: surfaces[0]";
+    const std::string kinds = where + ": expected one of the keys sphere, cylinder, cone, quadric";
+    EXPECT_EQ(error_in(in_surface("")), kinds);
+    EXPECT_EQ(error_in(in_surface(R"("sphere": {"centre": [0,0,0], "radius": 1},
+                                     "cone": {"from": [0,0,0], "to": [0,1,0], "radius": 1})")),
+              kinds);
+    EXPECT_EQ(error_in(in_surface(R"("torus": {})")),
+              where +
+                  ".torus: unknown key; known ones are sphere, cylinder, cone, quadric, name, "
+                  "transform, material");
+    EXPECT_EQ(error_in(in_surface(R"("sphere": {"radius": 1})")),
+              where + ".sphere.centre: missing");
+    EXPECT_EQ(error_in(in_surface(R"("sphere": {"centre": [0,0,0], "radius": 0})")),
+              where + ".sphere.radius: expected a number above 0");
+    EXPECT_EQ(error_in(in_surface(R"("sphere": {"center": [0,0,0], "radius": 1})")),
+              where + ".sphere.center: unknown key; known ones are centre, radius");
+    EXPECT_EQ(error_in(in_surface(R"("cone": {"from": [1,2,3], "to": [1,2,3], "radius": 1})")),
+              where + R"(.cone.to: expected another point than "from")");
+    EXPECT_EQ(error_in(in_surface(R"("cylinder": {"from": [0,0,0], "to": [0,1,0]})")),
+              where + ".cylinder.radius: missing");
+    const std::string ten =
+        ".quadric.coefficients: expected 10 numbers, the factors of x^2, y^2, z^2, xy, xz, yz, x, "
+        "y, z and 1, of which one before the last is not 0";
+    const std::string box = R"(, "box": [[-1,-1,-1], [1,1,1]]})";
+    EXPECT_EQ(error_in(in_surface(R"("quadric": {"coefficients": [1,2])" + box)), where + ten);
+    EXPECT_EQ(error_in(in_surface(R"("quadric": {"coefficients": [0,0,0,0,0,0,0,0,0,1])" + box)),
+              where + ten);
+    const std::string unit = R"("quadric": {"coefficients": [1,1,1,0,0,0,0,0,0,-1])";
+    EXPECT_EQ(error_in(in_surface(unit + "}")), where + ".quadric.box: missing");
+    EXPECT_EQ(error_in(in_surface(unit + R"(, "box": [[0,0,0]]})")),
+              where + ".quadric.box: expected [[x, y, z], [x, y, z]], its lowest and highest");
+    EXPECT_EQ(error_in(in_surface(unit + R"(, "box": [[0,0,0], [1,0,1]]})")),
+              where + ".quadric.box: expected a lowest corner below the highest one in x, y and z");
+    const std::string ball = R"("sphere": {"centre": [0,0,0], "radius": 1}, )";
+    const std::string irregular =
+        where + ": it is flat, or its size is not between 1e-30 and 1e30; change its numbers";
+    EXPECT_EQ(error_in(in_surface(
+                  ball + R"("transform": [{"matrix": [1,0,0,0, 0,0,0,0, 0,0,1,0, 0,0,0,1]}])")),
+              irregular);
+    EXPECT_EQ(error_in(in_surface(ball + R"("transform": [{"scale": 1e40}])")), irregular);
+    EXPECT_EQ(error_in(R"({"models": [], "surfaces": []})"),
+              "scene.json: models: expected at least one model");
+}
+
+TEST(SceneFile, SurfacesAreObjectsOfTheirOwn) {
+    const TemporaryFolder folder;
+    (void)folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string path = folder.write("scene.json", R"({"surfaces": [
+        {"sphere": {"centre": [1, 0, 0], "radius": 2}, "transform": [{"translate": [4, 0, 0]}],
+         "name": "ball", "material": {"base_color": [1, 0, 0], "opacity": 0.5}},
+        {"cone": {"from": [0, 1, 0], "to": [0, 0, 0], "radius": 1}}],
+        "models": [{"path": "a.obj"}]})");
+    const Scene scene = loaded(load_one(path));
+    ASSERT_EQ(scene.quadrics.size(), 2u);
+    ASSERT_EQ(scene.objects.size(), 3u);
+    EXPECT_EQ(scene.object_of(1), 1u);
+    EXPECT_EQ(scene.objects[1].name, "ball");
+    EXPECT_EQ(scene.objects[2].name, "cone");
+    EXPECT_EQ(scene.materials[scene.objects[1].material].opacity, 0.5f);
+    EXPECT_EQ(scene.materials[scene.objects[1].material].base_color, glm::vec3(1, 0, 0));
+    EXPECT_EQ(scene.bounds.hi.x, 7);
+    EXPECT_EQ(scene.quadrics[1].kind, QuadricKind::cone);
+}
+
+TEST(SceneFile, SurfacesAloneAreAScene) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("scene.json", R"({"surfaces": [
+        {"quadric": {"coefficients": [1,1,1,0,0,0,0,0,0,-1], "box": [[-1,-1,0],[1,1,1]]}}]})");
+    const Scene scene = loaded(load_one(path));
+    EXPECT_EQ(scene.triangle_count(), 0u);
+    EXPECT_EQ(scene.bounds, (Box{{-1, -1, 0}, {1, 1, 1}}));
 }
 
 TEST(SceneFile, BrokenJson) {

@@ -142,7 +142,8 @@ TEST(Warnock, AFoldedWallHidesWhatIsBehindBothOfItsSides) {
     add_litter(b, 600, -1, .6);
     b.triangle({-1.1, -1.1, 0}, {1.1, -1.1, 0}, {1.1, 1.1, .4});
     b.triangle({-1.1, -1.1, 0}, {1.1, 1.1, .4}, {-1.1, 1.1, -.2});
-    const ScreenScene screen = front_view(b.build(), 200);
+    const Scene scene = b.build();
+    const ScreenScene screen = front_view(scene, 200);
     Counts counts = counts_of(screen);
     EXPECT_GT(counts[kFirst], 100u);
     EXPECT_LT(counts[kFirst], 700u);

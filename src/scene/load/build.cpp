@@ -31,13 +31,6 @@ glm::vec3 linear_color(const glm::vec3& color, bool srgb) {
             linear_channel(color.z, srgb)};
 }
 
-void apply(const MaterialOverride& what, Material& material) {
-    material.base_color = what.base_color.value_or(material.base_color);
-    material.opacity = what.opacity.value_or(material.opacity);
-    material.specular = what.specular.value_or(material.specular);
-    material.shininess = what.shininess.value_or(material.shininess);
-}
-
 /// What carries normals along with a transform, up to length: the inverse transpose, as cofactors
 /// (so a flattening transform works too) with the sign of a mirror taken out.
 glm::dmat3 normal_transform(const glm::dmat3& m) {
@@ -63,6 +56,13 @@ void reserve_more(std::vector<T>& vector, std::size_t size) {
 }
 
 }  // namespace
+
+void apply(const MaterialOverride& what, Material& material) {
+    material.base_color = what.base_color.value_or(material.base_color);
+    material.opacity = what.opacity.value_or(material.opacity);
+    material.specular = what.specular.value_or(material.specular);
+    material.shininess = what.shininess.value_or(material.shininess);
+}
 
 struct SceneBuilder::Instance {
     const SoupMesh& mesh;

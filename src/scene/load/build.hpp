@@ -21,6 +21,8 @@ struct MaterialOverride {
     std::optional<float> opacity, specular, shininess;
 };
 
+void apply(const MaterialOverride& what, Material& material);
+
 /// Where a model stands and what it is called.
 struct Placement {
     std::string file;                 ///< in messages

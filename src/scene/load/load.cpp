@@ -113,6 +113,7 @@ private:
 
     const LoadOptions& options_;
     SceneBuilder builder_;
+    std::vector<SurfaceEntry> surfaces_;
     std::vector<Light> lights_;
     std::optional<CameraOptions> camera_;
 };
@@ -188,6 +189,7 @@ Status Loader::add_scene(std::string_view text, const std::string& name,
         Status added = add_file(path, extension_of(path), placement);
         if (!added) return added;
     }
+    surfaces_.insert(surfaces_.end(), scene->surfaces.begin(), scene->surfaces.end());
     lights_.insert(lights_.end(), scene->lights.begin(), scene->lights.end());
     if (scene->camera && camera_) {
         return bad_input(
@@ -199,6 +201,11 @@ Status Loader::add_scene(std::string_view text, const std::string& name,
 
 Result<Scene> Loader::finish(const std::string& name) {
     Scene scene = builder_.take();
+    for (const SurfaceEntry& surface : surfaces_) {
+        Material material;
+        apply(surface.material, material);
+        add_quadric(scene, surface.quadric, clean_text(surface.name), material);
+    }
     scene.lights = std::move(lights_);
     scene.camera = camera_;
     finish_joined_scene(scene);

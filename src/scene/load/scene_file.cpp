@@ -1,5 +1,6 @@
 #include "scene/load/scene_file.hpp"
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -135,6 +136,71 @@ ModelEntry model(const JsonValue& value) {
     return entry;
 }
 
+Quadric sphere(const JsonValue& value) {
+    value.allow_keys({"centre", "radius"});
+    return make_sphere(value.at("centre").vector(), value.at("radius").positive());
+}
+
+Quadric from_to(const JsonValue& value, Quadric (*make)(glm::dvec3, glm::dvec3, double)) {
+    value.allow_keys({"from", "to", "radius"});
+    const glm::dvec3 from = value.at("from").vector(), to = value.at("to").vector();
+    if (from == to) value.at("to").fail("expected another point than \"from\"");
+    return make(from, to, value.at("radius").positive());
+}
+
+Quadric general_quadric(const JsonValue& value) {
+    value.allow_keys({"coefficients", "box"});
+    const JsonValue list = value.at("coefficients");
+    const char* const expected =
+        "expected 10 numbers, the factors of x^2, y^2, z^2, xy, xz, yz, x, y, z and 1, of which "
+        "one before the last is not 0";
+    if (!list.is_array()) list.fail(expected);
+    const std::vector<JsonValue> items = list.items();
+    if (items.size() != 10) list.fail(expected);
+    std::array<double, 10> coefficients{};
+    bool varies = false;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        coefficients[i] = items[i].number();
+        varies = varies || (i < 9 && coefficients[i] != 0);
+    }
+    if (!varies) list.fail(expected);
+    const JsonValue box = value.at("box");
+    const std::vector<JsonValue> corners = box.items();
+    if (corners.size() != 2) box.fail("expected [[x, y, z], [x, y, z]], its lowest and highest");
+    const Box extent{corners[0].vector(), corners[1].vector()};
+    if (!(extent.lo.x < extent.hi.x && extent.lo.y < extent.hi.y && extent.lo.z < extent.hi.z)) {
+        box.fail("expected a lowest corner below the highest one in x, y and z");
+    }
+    return make_quadric(coefficients, extent);
+}
+
+SurfaceEntry surface(const JsonValue& value) {
+    value.allow_keys({"sphere", "cylinder", "cone", "quadric", "name", "transform", "material"});
+    SurfaceEntry entry;
+    int kinds = 0;
+    const auto kind = [&](const char* name, const auto& read) {
+        value.if_has(name, [&](const JsonValue& v) {
+            entry.quadric = read(v);
+            entry.name = name;
+            ++kinds;
+        });
+    };
+    kind("sphere", sphere);
+    kind("cylinder", [](const JsonValue& v) { return from_to(v, make_cylinder); });
+    kind("cone", [](const JsonValue& v) { return from_to(v, make_cone); });
+    kind("quadric", general_quadric);
+    if (kinds != 1) value.fail("expected one of the keys sphere, cylinder, cone, quadric");
+    value.if_has("name", [&](const JsonValue& v) { entry.name = v.text(); });
+    value.if_has("transform", [&](const JsonValue& v) {
+        entry.quadric = transformed(entry.quadric, transform(v));
+    });
+    value.if_has("material", [&](const JsonValue& v) { entry.material = material(v); });
+    if (!is_regular(entry.quadric)) {
+        value.fail("it is flat, or its size is not between 1e-30 and 1e30; change its numbers");
+    }
+    return entry;
+}
+
 Light light(const JsonValue& value) {
     value.allow_keys({"type", "direction", "position", "color", "intensity"});
     Light result;
@@ -194,10 +260,19 @@ CameraOptions camera(const JsonValue& value) {
 }
 
 SceneDescription description(const JsonValue& root) {
-    root.allow_keys({"models", "lights", "camera"});
+    root.allow_keys({"models", "surfaces", "lights", "camera"});
     SceneDescription scene;
-    for (const JsonValue& item : root.at("models").items()) scene.models.push_back(model(item));
-    if (scene.models.empty()) root.at("models").fail("expected at least one model");
+    root.if_has("surfaces", [&](const JsonValue& v) {
+        for (const JsonValue& item : v.items()) scene.surfaces.push_back(surface(item));
+    });
+    if (scene.surfaces.empty() || root.has("models")) {
+        for (const JsonValue& item : root.at("models").items()) {
+            scene.models.push_back(model(item));
+        }
+    }
+    if (scene.models.empty() && scene.surfaces.empty()) {
+        root.at("models").fail("expected at least one model");
+    }
     root.if_has("lights", [&](const JsonValue& v) {
         for (const JsonValue& item : v.items()) scene.lights.push_back(light(item));
     });

@@ -1,4 +1,5 @@
-// scene.json: models with their places, lights, a camera. The schema is in docs/scene-file.md.
+// scene.json: models with their places, quadrics, lights, a camera. The schema is in
+// docs/scene-file.md.
 #pragma once
 
 #include <optional>
@@ -20,8 +21,15 @@ struct ModelEntry {
     MaterialOverride material;
 };
 
+struct SurfaceEntry {
+    Quadric quadric;   ///< in its place
+    std::string name;  ///< that of its kind when it has none
+    MaterialOverride material;
+};
+
 struct SceneDescription {
-    std::vector<ModelEntry> models;  ///< at least one
+    std::vector<ModelEntry> models;  ///< models and surfaces: at least one of both
+    std::vector<SurfaceEntry> surfaces;
     std::vector<Light> lights;
     std::optional<CameraOptions> camera;
 };

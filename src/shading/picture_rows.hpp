@@ -1,0 +1,56 @@
+// The rows of everything that a picture can show.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cstdint>
+#include <glm/vec4.hpp>
+
+#include "math/arena.hpp"
+#include "shading/row_maps.hpp"
+#include "shading/row_shader.hpp"
+#include "sightline/shading.hpp"
+
+namespace sightline {
+
+/// Colours and maps of the rows of pixels that two visibilities hold at the moment, counted from
+/// the first one. Any number of threads may ask. The visibilities must outlive it; their grids must
+/// be set before it is made.
+class PictureRows {
+public:
+    /// `samples` is that of the colours, `centres` has one sample a pixel.
+    PictureRows(const ScreenScene& screen, const Visibility& samples, const Visibility& centres,
+                const ShadeOptions& options)
+        : shader_(screen, samples, options),
+          maps_(screen, centres, is_smooth(options.shading)),
+          caches_([this] { return shader_.make_cache(); }) {}
+
+    void color(std::uint32_t y, glm::vec4* out) { shader_.shade(y, caches_.local(), out); }
+    void rgba8(std::uint32_t y, std::array<std::uint8_t, 4>* out) {
+        shader_.shade_rgba8(y, caches_.local(), out);
+    }
+    [[nodiscard]] const RowMaps& maps() const { return maps_; }
+
+private:
+    RowShader shader_;
+    RowMaps maps_;
+    tbb::enumerable_thread_specific<FaceCache> caches_;
+};
+
+/// make(y) for rows first .. first + count - 1, in parallel.
+template <class Make>
+void for_rows(std::uint32_t first, std::uint32_t count, int threads, const Make& make) {
+    // Blocks of rows are tall enough for the caches of triangles to serve more than once.
+    constexpr std::uint32_t kGrain = 4;
+    in_arena(threads, [&] {
+        const tbb::blocked_range<std::uint32_t> all(first, first + count, kGrain);
+        tbb::parallel_for(all, [&](const auto& range) {
+            for (std::uint32_t y = range.begin(); y != range.end(); ++y) make(y);
+        });
+    });
+}
+
+}  // namespace sightline
