@@ -34,6 +34,7 @@ struct Run {
     const Algorithm* algorithm = nullptr;
     std::uint64_t differ = 0, samples = 0, exact = 0;
     double ms = 0, peak_mib = 0;
+    std::vector<Counter> counts;
 };
 
 Result<CompareOptions> read_options(const Arguments& arguments) {
@@ -91,6 +92,7 @@ Result<Run> measure(const Algorithm& algorithm, const ScreenScene& screen, int t
     for (const Counter& counter : counters) {
         if (counter.name == kExactCounter) run.exact += counter.value;
     }
+    run.counts = std::move(counters);
     return run;
 }
 
@@ -157,12 +159,19 @@ Result<Comparison> compare(const CompareOptions& options, const ScreenScene& scr
 std::string as_json(const Comparison& comparison) {
     Value::List rows;
     for (const Run& run : comparison.rows) {
+        Value::Object counts;
+        for (const Counter& counter : run.counts) {
+            std::string key = counter.name;
+            std::replace(key.begin(), key.end(), ' ', '_');
+            counts.emplace_back(key, counter.value);
+        }
         rows.emplace_back(Value::Object{{"algorithm", run.algorithm->name},
                                         {"differ", run.differ},
                                         {"samples", run.samples},
                                         {"ms", milliseconds(run.ms)},
                                         {"peak_mib", milliseconds(run.peak_mib)},
-                                        {"exact", run.exact}});
+                                        {"exact", run.exact},
+                                        {"counts", counts}});
     }
     return to_json(Value::Object{{"reference", comparison.reference->name}, {"rows", rows}}) + "\n";
 }
@@ -176,6 +185,18 @@ std::string as_text(const Comparison& comparison) {
                         fmt::format("{:.1f}", run.peak_mib), fmt::to_string(run.exact)});
     }
     return fmt::format("reference: {}\n{}", comparison.reference->name, to_grid(rows));
+}
+
+/// What each algorithm counted, for --stats.
+std::string counts_as_text(const Comparison& comparison) {
+    std::vector<std::vector<std::string>> rows;
+    for (const Run& run : comparison.rows) {
+        for (const Counter& counter : run.counts) {
+            rows.push_back(
+                {std::string(run.algorithm->name), counter.name, fmt::to_string(counter.value)});
+        }
+    }
+    return to_grid(rows);
 }
 
 /// 1 when an algorithm broke its promise, 0 otherwise.
@@ -221,6 +242,7 @@ Result<int> run(const Arguments& arguments) {
                    to_table({{"", "load", milliseconds(load_ms), "ms"},
                              {"", "project", milliseconds(project_ms), "ms"},
                              {"", "triangles", scene->triangle_count(), ""}}));
+        fmt::print(stderr, "{}", counts_as_text(*comparison));
     }
     const auto text = options->common.json ? as_json : as_text;
     if (Status done = print(text(*comparison)); !done) return done.error();

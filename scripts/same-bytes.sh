@@ -44,4 +44,8 @@ for model in "$samples"/*.obj "$samples"/*.ply "$samples"/*.json; do
     check "$model" --projection orthographic --view front --shading flat
     check "$model" --samples 4 --view trimetric --shading gouraud
 done
+# Every algorithm, for some have vector code of their own.
+for algorithm in $("${programs[0]}" algorithms --json | grep -o '"name":"[^"]*"' | cut -d'"' -f4); do
+    check "$samples/house.obj" --algorithm "$algorithm"
+done
 echo "same-bytes: $cases cases, each the same on 2 programs and 1, 2 and 8 threads"

@@ -108,7 +108,8 @@ TEST_F(Data, Compare) {
     for (const json& row : object["rows"]) {
         EXPECT_EQ(row["differ"], 0) << row;
         EXPECT_EQ(row["samples"], 64 * 48);
-        expect_keys(row, {"algorithm", "ms", "peak_mib", "exact"});
+        expect_keys(row, {"algorithm", "ms", "peak_mib", "exact", "counts"});
+        EXPECT_FALSE(row["counts"].empty()) << row;
     }
     const json one = data({"compare", "cube.obj", "--algorithms", "zbuffer", "--resolution",
                            "64x48", "--difference", "d.png"});
