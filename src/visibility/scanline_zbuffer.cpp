@@ -118,6 +118,7 @@ private:
         const double z = s.depth(w.column, rows.row());
         // A shared plane may leave the depths of the scene beside its triangle.
         w.regular = std::abs(z) <= 0x1p30 + kRegular;
+        if (!w.regular) return;
         w.z = static_cast<Fixed>(z * kOne);
         w.along = static_cast<Fixed>(s.gx * kOne);
         w.down = static_cast<Fixed>(s.gy * kOne);
