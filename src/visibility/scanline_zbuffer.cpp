@@ -2,7 +2,7 @@
 //
 // Source: A. Watt, "Fundamentals of Three-Dimensional Computer Graphics", 1989, section 5.3; the
 // incremental depth is as old as the scan-line algorithms, see Sutherland, Sproull, Schumacker, "A
-// Characterization of Ten Hidden-SampledPlane Algorithms", 1974.
+// Characterization of Ten Hidden-Surface Algorithms", 1974.
 //
 // How this version differs: depths run in 64-bit fixed point with 32 bits of fraction, so that the
 // increments (z + A along the row, z + B + A times the columns that the left edge moves) gather an

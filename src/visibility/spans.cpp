@@ -1,6 +1,6 @@
 // Spans: in each row, one decision for every stretch between the ends of the polygons' segments.
 //
-// Source: G. Watkins, "A Real-Time Visible SampledPlane Algorithm", University of Utah, 1970; the
+// Source: G. Watkins, "A Real-Time Visible Surface Algorithm", University of Utah, 1970; the
 // plane of a scan line cuts each polygon in a segment, and between two neighbouring ends of
 // segments the set of segments does not change.
 //
