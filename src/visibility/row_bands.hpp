@@ -63,12 +63,12 @@ private:
                    std::uint32_t number, std::int32_t row);
 };
 
-/// Makes a RowSource of a Machine, which resolves the rows of one band from the top:
+/// Makes a RowSource of a Machine, a ScanMachine that resolves the rows of one band from the top.
+/// It is opened for every row of the band, and has
 ///
-///     Machine(screen, units, observer)
-///     add(number, row)         a triangle begins in this row
-///     row(row, ids, depth)     resolves a row; called for every row of the band
-///     Counts counts            default-constructible, with += and report(options)
+///     add(number)      a triangle begins in the open row
+///     resolve_row()    called once that row's triangles are added
+///     Counts counts    default-constructible, with += and report(options)
 template <class Machine>
 class RowScanner final : public RowSource {
 public:
@@ -89,9 +89,9 @@ public:
         const auto width = static_cast<std::size_t>(units_.columns);
         for (std::int32_t r = 0; r < rows; ++r) {
             const auto at = static_cast<std::size_t>(r);
-            for (std::uint32_t i = starts[at]; i < starts[at + 1]; ++i)
-                machine.add(numbers[i], first + r);
-            machine.row(first + r, ids + at * width, depth + at * width);
+            machine.open_row(first + r, ids + at * width, depth + at * width);
+            for (std::uint32_t i = starts[at]; i < starts[at + 1]; ++i) machine.add(numbers[i]);
+            machine.resolve_row();
         }
         const std::lock_guard lock(mutex_);
         counts_ += machine.counts;

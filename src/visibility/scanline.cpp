@@ -23,6 +23,7 @@
 #include "visibility/active_pool.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
+#include "visibility/scan_machine.hpp"
 
 namespace sightline {
 
@@ -64,19 +65,14 @@ constexpr std::array kCountNames{
     CountName{"crossings"},           CountName{"exact comparisons"},
 };
 
-class Machine {
+class Machine : public ScanMachine {
 public:
     using Counts = sightline::Counts<Count, kCountNames>;
 
-    Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
-        : screen_(screen),
-          units_(units),
-          observer_(observer),
-          judge_(screen, units, observer),
-          edges_(units.columns) {}
+    using ScanMachine::ScanMachine;
 
-    void add(std::uint32_t number, std::int32_t row) {
-        const std::uint32_t slot = pool_.add(screen_, units_, number, row);
+    void add(std::uint32_t number) {
+        const std::uint32_t slot = pool_.add(screen_, units_, number, row_);
         if (slot == kNone) return;
         if (slot >= serial_.size()) {
             serial_.resize(slot + 1);
@@ -87,13 +83,10 @@ public:
         counts[Count::edges] += 2;
         const RowTriangle& rows = pool_.rows(slot);
         for (const std::int32_t x : {rows.left(), rows.right()})
-            tell(StepKind::edge_activated, slot, kNone, x, x + 1, row);
+            tell(StepKind::edge_activated, surface(slot), kNone, x, x + 1);
     }
 
-    void row(std::int32_t j, std::uint32_t* ids, float* depth) {
-        row_ = j;
-        ids_ = ids;
-        depth_ = depth;
+    void resolve_row() {
         list_edges();
         counts.reaches(Count::most_active, 2 * pool_.active().size());
         sweep();
@@ -160,7 +153,7 @@ private:
             const std::uint32_t before = visible_;
             emit(before, at);
             visible_ = nearest(at);
-            tell(StepKind::span_split, before, surface(visible_).id, at, at + 1, row_);
+            tell(StepKind::span_split, surface(before), surface(visible_).id, at, at + 1);
             change_ = next_change(on_, at);
         }
     }
@@ -249,7 +242,7 @@ private:
         if (s.shared != kNone && s.shared == t.shared)
             return s.id < t.id ? Order::first_hides : Order::second_hides;
         ++related_;
-        tell(StepKind::depths_compared, a, t.id, pool_.rows(a).left(), pool_.rows(a).right(), row_);
+        tell(StepKind::depths_compared, s, t.id, pool_.rows(a).left(), pool_.rows(a).right());
         const std::int32_t left = std::max(pool_.columns(a).first, pool_.columns(b).first);
         const std::int32_t right = std::min(pool_.columns(a).end, pool_.columns(b).end) - 1;
         const std::int32_t bottom = std::min(pool_.rows(a).end_row(), pool_.rows(b).end_row()) - 1;
@@ -272,41 +265,26 @@ private:
     void emit(std::uint32_t slot, std::int32_t end) {
         if (end <= from_) return;
         if (slot == kNone) {
-            fill_background(from_, end, ids_, depth_);
+            fill_background(from_, end);
         } else {
             ++counts[Count::runs];
             counts[Count::alone] += alone_;
-            fill_run(screen_, units_, surface(slot), row_, from_, end, ids_, depth_);
-            tell(StepKind::span_decided, slot, kNone, from_, end, row_);
+            fill_run(surface(slot), from_, end);
+            tell(StepKind::span_decided, surface(slot), kNone, from_, end);
         }
         from_ = end;
     }
 
-    void tell(StepKind kind, std::uint32_t slot, std::uint32_t other, std::int32_t first,
-              std::int32_t end, std::int32_t row) const {
-        if (observer_ == nullptr) return;
-        const auto y = static_cast<std::uint32_t>(row);
-        observer_->step({kind, surface(slot).id, other, static_cast<std::uint32_t>(first), y,
-                         static_cast<std::uint32_t>(end), y + 1});
-    }
-
-    const ScreenScene& screen_;
-    SampleUnits units_;
-    Observer* observer_;
-    DepthJudge judge_;
     ActivePool pool_;
     std::vector<std::uint32_t> serial_;  // of the triangle in each slot
     std::vector<Memory> memory_;         // by slot
     std::uint32_t last_serial_ = 0;
     std::uint64_t related_ = 0;
-    ColumnBuckets edges_;                    // the active edge list
+    ColumnBuckets edges_{units_.columns};    // the active edge list
     std::vector<std::uint32_t> on_, begun_;  // surfaces whose flag is in; those that just turned
     std::uint32_t visible_ = kNone;
     std::int32_t from_ = 0, change_ = kNever;  // the visible run's start, and its first crossing
     bool alone_ = false;                       // no other surface is on along the run
-    std::int32_t row_ = 0;
-    std::uint32_t* ids_ = nullptr;
-    float* depth_ = nullptr;
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
 #include "visibility/row_bands.hpp"
+#include "visibility/scan_machine.hpp"
 
 namespace sightline {
 
@@ -60,20 +61,14 @@ constexpr std::array kCountNames{
     CountName{"exact comparisons"},
 };
 
-class Machine {
+class Machine : public ScanMachine {
 public:
     using Counts = sightline::Counts<Count, kCountNames>;
 
-    Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
-        : screen_(screen),
-          units_(units),
-          observer_(observer),
-          judge_(screen, units, observer),
-          z_(static_cast<std::size_t>(units.columns)),
-          owner_(static_cast<std::size_t>(units.columns)) {}
+    using ScanMachine::ScanMachine;
 
-    void add(std::uint32_t number, std::int32_t row) {
-        active_.emplace_back(screen_, units_, number, row);
+    void add(std::uint32_t number) {
+        active_.emplace_back(screen_, units_, number, row_);
         Walker& w = active_.back();
         if (w.active.rows.empty()) {
             active_.pop_back();
@@ -84,21 +79,21 @@ public:
         ++counts[Count::triangles];
     }
 
-    void row(std::int32_t j, std::uint32_t* ids, float* depth) {
+    void resolve_row() {
         counts.reaches(Count::most_active, active_.size());
-        std::fill(z_.begin(), z_.end(), kNothing);
-        std::fill(owner_.begin(), owner_.end(), kNone);
+        z_.assign(static_cast<std::size_t>(units_.columns), kNothing);
+        owner_.assign(static_cast<std::size_t>(units_.columns), kNone);
         for (std::uint32_t k = 0; k < active_.size(); ++k) {
             const Walker& w = active_[k];
             const std::int32_t left = w.active.rows.left(), right = w.active.rows.right();
             if (left >= right) continue;
             counts[Count::samples] += static_cast<std::uint64_t>(right - left);
             if (w.regular)
-                draw(k, j, left, right);
+                draw(k, left, right);
             else
-                draw_steep(k, j, left, right);
+                draw_steep(k, left, right);
         }
-        write(j, ids, depth);
+        write();
         advance();
         counts[Count::exact] = judge_.exact;
     }
@@ -128,30 +123,33 @@ private:
         return std::min(rows.left(), units_.columns);
     }
 
-    void draw(std::uint32_t k, std::int32_t j, std::int32_t left, std::int32_t right) {
+    // Not inlined, so that z has a register to itself.
+    [[gnu::noinline]] void draw(std::uint32_t k, std::int32_t left, std::int32_t right) {
         const Walker& w = active_[k];
         const Fixed along = w.along;
         Fixed z = w.z + along * (left - w.column);
-        for (std::int32_t i = left; i < right; ++i, z += along) offer(k, i, j, z);
+        for (std::int32_t i = left; i < right; ++i, z += along) offer(k, i, z);
     }
 
     // Too steep to be followed in fixed point: the quotient of the integers, rounded down.
-    void draw_steep(std::uint32_t k, std::int32_t j, std::int32_t left, std::int32_t right) {
+    void draw_steep(std::uint32_t k, std::int32_t left, std::int32_t right) {
         const Plane plane = screen_.plane(active_[k].active.surface.id);
         constexpr Int128 kLimit = Int128{1} << 62;
         for (std::int32_t i = left; i < right; ++i) {
-            const Int128 numerator = depth_numerator(plane, units_.position(i), units_.position(j));
+            const Int128 numerator =
+                depth_numerator(plane, units_.position(i), units_.position(row_));
             const Int128 z = (numerator << kFractionBits) / plane.c;
-            offer(k, i, j, static_cast<Fixed>(std::clamp(z, -kLimit, kLimit)));
+            offer(k, i, static_cast<Fixed>(std::clamp(z, -kLimit, kLimit)));
         }
     }
 
-    void offer(std::uint32_t k, std::int32_t i, std::int32_t j, Fixed z) {
+    void offer(std::uint32_t k, std::int32_t i, Fixed z) {
         const auto at = static_cast<std::size_t>(i);
         const Fixed old = z_[at];
         if (z > old + kUncertain) return;
-        if (z > old - kUncertain && !judge_.before(surface(k), surface(owner_[at]), i, j)) return;
-        if (observer_ != nullptr) tell(k, i, j);
+        if (z > old - kUncertain && !judge_.before(surface(k), surface(owner_[at]), i, row_))
+            return;
+        if (observer_ != nullptr) tell_owner(k, i, owner_[at]);
         z_[at] = z;
         owner_[at] = k;
     }
@@ -160,23 +158,22 @@ private:
         return active_[k].active.surface;
     }
 
-    void tell(std::uint32_t k, std::int32_t i, std::int32_t j) const {
-        const auto x = static_cast<std::uint32_t>(i), y = static_cast<std::uint32_t>(j);
-        const std::uint32_t before = owner_[x] == kNone ? kNone : surface(owner_[x]).id;
-        observer_->step({StepKind::sample_decided, surface(k).id, before, x, y, x + 1, y + 1});
+    void tell_owner(std::uint32_t k, std::int32_t i, std::uint32_t before) const {
+        const std::uint32_t id = before == kNone ? kNone : surface(before).id;
+        tell(StepKind::sample_decided, surface(k), id, i, i + 1);
     }
 
     // Runs of one owner.
-    void write(std::int32_t j, std::uint32_t* ids, float* depth) const {
+    void write() {
         const std::uint32_t* owner = owner_.data();
         for (std::int32_t i = 0; i < units_.columns;) {
             const std::uint32_t k = owner[i];
             std::int32_t end = i + 1;
             while (end < units_.columns && owner[end] == k) ++end;
             if (k == kNone)
-                fill_background(i, end, ids, depth);
+                fill_background(i, end);
             else
-                fill_run(screen_, units_, surface(k), j, i, end, ids, depth);
+                fill_run(surface(k), i, end);
             i = end;
         }
     }
@@ -200,10 +197,6 @@ private:
         }
     }
 
-    const ScreenScene& screen_;
-    SampleUnits units_;
-    Observer* observer_;
-    DepthJudge judge_;
     std::vector<Walker> active_;
     std::vector<Fixed> z_;              // the row of depth
     std::vector<std::uint32_t> owner_;  // and who it belongs to: an index into active_

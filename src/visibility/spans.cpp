@@ -20,6 +20,7 @@
 #include "visibility/active_pool.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
+#include "visibility/scan_machine.hpp"
 
 namespace sightline {
 
@@ -53,27 +54,19 @@ constexpr std::array kCountNames{
     CountName{"exact comparisons"},
 };
 
-class Machine {
+class Machine : public ScanMachine {
 public:
     using Counts = sightline::Counts<Count, kCountNames>;
 
-    Machine(const ScreenScene& screen, const SampleUnits& units, Observer* observer)
-        : screen_(screen),
-          units_(units),
-          observer_(observer),
-          judge_(screen, units, observer),
-          buckets_(units.columns) {}
+    using ScanMachine::ScanMachine;
 
-    void add(std::uint32_t number, std::int32_t row) {
-        const std::uint32_t slot = pool_.add(screen_, units_, number, row);
+    void add(std::uint32_t number) {
+        const std::uint32_t slot = pool_.add(screen_, units_, number, row_);
         if (slot == kNone) return;
         if (observer_ != nullptr) observer_->step({StepKind::triangle_taken, pool_.plane(slot).id});
     }
 
-    void row(std::int32_t j, std::uint32_t* ids, float* depth) {
-        row_ = j;
-        ids_ = ids;
-        depth_ = depth;
+    void resolve_row() {
         cut_segments();
         counts.reaches(Count::most_active, pool_.active().size());
         counts[Count::segments] += segments_.size();
@@ -105,7 +98,7 @@ private:
         std::int32_t x = 0;
         for (std::size_t next = 0; next < segments.size() || !on_.empty();) {
             if (on_.empty()) {
-                fill_background(x, segments[next].left, ids_, depth_);
+                fill_background(x, segments[next].left);
                 x = segments[next].left;
             }
             while (next < segments.size() && segments[next].left == x)
@@ -116,7 +109,7 @@ private:
             std::erase_if(on_, [end](const Segment& s) { return s.right == end; });
             x = end;
         }
-        fill_background(x, units_.columns, ids_, depth_);
+        fill_background(x, units_.columns);
     }
 
     void take_span(std::int32_t first, std::int32_t end) {
@@ -154,29 +147,14 @@ private:
     }
 
     void write(const SampledPlane& surface, std::int32_t first, std::int32_t end) {
-        fill_run(screen_, units_, surface, row_, first, end, ids_, depth_);
+        fill_run(surface, first, end);
         tell(StepKind::span_decided, surface, kNone, first, end);
     }
 
-    void tell(StepKind kind, const SampledPlane& surface, std::uint32_t other, std::int32_t first,
-              std::int32_t end) const {
-        if (observer_ == nullptr) return;
-        const auto y = static_cast<std::uint32_t>(row_);
-        observer_->step({kind, surface.id, other, static_cast<std::uint32_t>(first), y,
-                         static_cast<std::uint32_t>(end), y + 1});
-    }
-
-    const ScreenScene& screen_;
-    SampleUnits units_;
-    Observer* observer_;
-    DepthJudge judge_;
     ActivePool pool_;
-    ColumnBuckets buckets_;
+    ColumnBuckets buckets_{units_.columns};
     std::vector<Segment> segments_;  // those that cover a sample of the row, by left end
     std::vector<Segment> on_;
-    std::int32_t row_ = 0;
-    std::uint32_t* ids_ = nullptr;
-    float* depth_ = nullptr;
 };
 
 }  // namespace
