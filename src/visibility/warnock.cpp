@@ -123,7 +123,7 @@ public:
         });
         for_each_index(quadrants, options_,
                        [&](std::uint32_t q) { divide(subdividers.local(), q); });
-        Counts counts;
+        Subdivider::Counts counts;
         for (const Subdivider& s : subdividers) counts += s.counts();
         report(counts);
     }
@@ -252,32 +252,16 @@ private:
         subdivider.run(here, numbers);
     }
 
-    void report(const Counts& counts) const {
+    void report(const Subdivider::Counts& counts) const {
         std::uint64_t candidates = 0, hidden = 0;
         for (const Chunk& chunk : chunks_) {
             candidates += chunk.candidates.size();
             hidden += chunk.hidden;
         }
-        const auto of = [&](Relation relation) {
-            return counts.relations[static_cast<std::size_t>(relation)];
-        };
         count(options_, "quadrants of the first level", hiders_.size());
         count(options_, "triangles over samples", candidates);
         count(options_, "triangles hidden at the first level", hidden);
-        count(options_, "triangles handed to quadrants", counts.set_up);
-        count(options_, "subdivisions", counts.subdivisions);
-        count(options_, "quadrants that are empty", counts.empty);
-        count(options_, "quadrants with one triangle", counts.single);
-        count(options_, "quadrants with one surrounding triangle", counts.surrounded);
-        count(options_, "quadrants with a surrounding triangle in front", counts.in_front);
-        count(options_, "quadrants decided by sample", counts.direct);
-        count(options_, "triangles classified disjoint", of(Relation::disjoint));
-        count(options_, "triangles classified intersecting", of(Relation::intersecting));
-        count(options_, "triangles classified contained", of(Relation::contained));
-        count(options_, "triangles classified surrounding", of(Relation::surrounding));
-        count(options_, "triangles hidden in quadrants", counts.hidden);
-        count(options_, "depth comparisons", counts.comparisons);
-        count(options_, "exact comparisons", counts.exact);
+        counts.report(options_);
     }
 
     const ScreenScene& screen_;

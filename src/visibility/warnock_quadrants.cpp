@@ -26,22 +26,12 @@ namespace {
 constexpr std::uint32_t kSurrounds = std::uint32_t{1} << 31;
 constexpr std::uint32_t kIndex = kSurrounds - 1;
 
-}  // namespace
-
-Counts& Counts::operator+=(const Counts& other) {
-    set_up += other.set_up;
-    for (std::size_t k = 0; k < relations.size(); ++k) relations[k] += other.relations[k];
-    hidden += other.hidden;
-    subdivisions += other.subdivisions;
-    empty += other.empty;
-    single += other.single;
-    surrounded += other.surrounded;
-    in_front += other.in_front;
-    direct += other.direct;
-    comparisons += other.comparisons;
-    exact += other.exact;
-    return *this;
+constexpr Count count_of(Relation relation) {
+    return static_cast<Count>(static_cast<int>(Count::disjoint) + static_cast<int>(relation));
 }
+static_assert(count_of(Relation::surrounding) == Count::surrounding);
+
+}  // namespace
 
 Subdivider::Subdivider(const ScreenScene& screen, const SampleUnits& units, Observer* observer,
                        int direct_bits, Visibility& out)
@@ -54,10 +44,10 @@ Subdivider::Subdivider(const ScreenScene& screen, const SampleUnits& units, Obse
     assert(direct_bits <= kBlockBits);
 }
 
-Counts Subdivider::counts() const {
+Subdivider::Counts Subdivider::counts() const {
     Counts all = counts_;
-    all.comparisons += judge_.comparisons;
-    all.exact += judge_.exact;
+    all[Count::comparisons] += judge_.comparisons;
+    all[Count::exact] += judge_.exact;
     return all;
 }
 
@@ -102,7 +92,7 @@ void Subdivider::add(std::uint32_t number, const Rect& quadrant) {
     tell(StepKind::triangle_taken, item.surface.id, kNone, here);
     items_.push_back(item);
     boxes_.push_back(here);
-    ++counts_.set_up;
+    ++counts_[Count::set_up];
 }
 
 void Subdivider::run(const Quadrant& quadrant, std::span<const std::uint32_t> numbers) {
@@ -121,16 +111,16 @@ void Subdivider::take(const Quadrant& quadrant, std::size_t begin, std::size_t e
     const auto [first, hidden_behind] = triage(r, begin, end);
     const std::size_t count = lists_.size() - first;
     if (count == 0) {
-        ++counts_.empty;
+        ++counts_[Count::empty];
         fill(r, nullptr);
     } else if (count == 1 && (lists_[first] & kSurrounds) != 0) {
-        ++(hidden_behind ? counts_.in_front : counts_.surrounded);
+        ++counts_[hidden_behind ? Count::in_front : Count::surrounded];
         fill(r, &items_[lists_[first] & kIndex]);
     } else if (count == 1) {
-        ++counts_.single;
+        ++counts_[Count::single];
         scan(r, items_[lists_[first]]);
     } else if (quadrant.bits <= direct_bits_) {
-        ++counts_.direct;
+        ++counts_[Count::direct];
         decide_directly(r, first, lists_.size());
     } else {
         split(quadrant, first, lists_.size());
@@ -139,7 +129,7 @@ void Subdivider::take(const Quadrant& quadrant, std::size_t begin, std::size_t e
 }
 
 void Subdivider::split(const Quadrant& quadrant, std::size_t begin, std::size_t end) {
-    ++counts_.subdivisions;
+    ++counts_[Count::subdivisions];
     tell(StepKind::quadrant_split, kNone, kNone, quadrant.samples(units_));
     const int bits = quadrant.bits - 1;
     const std::int32_t half = std::int32_t{1} << bits;
@@ -163,14 +153,14 @@ Subdivider::Survivors Subdivider::triage(const Rect& r, std::size_t begin, std::
         const bool apart = (box.i0 > r.i1) | (box.j0 > r.j1) | (box.i1 < r.i0) | (box.j1 < r.j0);
         met += apart ? 0 : 1;
     }
-    counts_.relations[static_cast<std::size_t>(Relation::disjoint)] += end - begin - (met - first);
+    counts_[Count::disjoint] += end - begin - (met - first);
     std::size_t top = first;
     for (std::size_t k = first; k < met; ++k) {
         std::uint32_t entry = lists_[k];
         const Item& item = items_[entry & kIndex];
         if ((entry & kSurrounds) == 0) {
             const Relation relation = item.shape.relation(r);
-            ++counts_.relations[static_cast<std::size_t>(relation)];
+            ++counts_[count_of(relation)];
             if (relation == Relation::disjoint) continue;
             if (relation == Relation::surrounding) entry |= kSurrounds;
         }
@@ -189,7 +179,7 @@ Subdivider::Survivors Subdivider::triage(const Rect& r, std::size_t begin, std::
         while (!sweep(r, first, hider)) {
         }
     const std::size_t dropped = before - (lists_.size() - first);
-    counts_.hidden += dropped;
+    counts_[Count::hidden] += dropped;
     return {first, dropped > 0};
 }
 
@@ -205,7 +195,7 @@ bool Subdivider::sweep(const Rect& r, std::size_t first, std::uint32_t& hider) {
         const Item& item = items_[index];
         if (index != hider && better == kNone) {
             const Rect seen = intersection(item.shape.box, r);
-            ++counts_.comparisons;
+            ++counts_[Count::comparisons];
             if (nearest_depth(item.surface, seen) > depth || hides(front, item, seen)) {
                 tell(StepKind::block_dismissed, item.surface.id, front.surface.id, r);
                 continue;
@@ -290,7 +280,7 @@ void Subdivider::offer(std::uint32_t index, const Rect& r, double slack, Block& 
     newcomer.i = r.i0, newcomer.j = r.j0;
     newcomer.slack = slack;
     Doubts doubts;
-    counts_.comparisons += warnock::offer(newcomer, block, doubts);
+    counts_[Count::comparisons] += warnock::offer(newcomer, block, doubts);
     for (std::size_t k = 0; k < doubts.count; ++k) {
         const std::size_t at = doubts.at[k];
         const std::int32_t i = r.i0 + static_cast<std::int32_t>(at) % kBlockSide;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/visibility.hpp"
+#include "visibility/counts.hpp"
 #include "visibility/sampled_plane.hpp"
 #include "visibility/warnock_block.hpp"
 #include "visibility/warnock_shape.hpp"
@@ -25,22 +26,46 @@ struct Quadrant {
     }
 };
 
-/// What was done below the first level.
-struct Counts {
-    std::uint64_t set_up = 0;                  ///< triangles handed to quadrants of the first level
-    std::array<std::uint64_t, 4> relations{};  ///< triangles classified, by Relation
-    std::uint64_t hidden = 0;                  ///< triangles dropped behind a surrounding one
-    std::uint64_t subdivisions = 0;
-    std::uint64_t empty = 0, single = 0, surrounded = 0, in_front = 0;  ///< the simple cases
-    std::uint64_t direct = 0;  ///< quadrants decided sample by sample
-    std::uint64_t comparisons = 0, exact = 0;
+/// What was done below the first level, in the order of the report.
+enum class Count : std::uint8_t {
+    set_up,
+    subdivisions,
+    empty,
+    single,
+    surrounded,
+    in_front,
+    direct,
+    disjoint,  // the four kinds of Relation
+    intersecting,
+    contained,
+    surrounding,
+    hidden,
+    comparisons,
+    exact
+};
 
-    Counts& operator+=(const Counts& other);
+inline constexpr std::array kCountNames{
+    CountName{"triangles handed to quadrants"},
+    CountName{"subdivisions"},
+    CountName{"quadrants that are empty"},
+    CountName{"quadrants with one triangle"},
+    CountName{"quadrants with one surrounding triangle"},
+    CountName{"quadrants with a surrounding triangle in front"},
+    CountName{"quadrants decided by sample"},
+    CountName{"triangles classified disjoint"},
+    CountName{"triangles classified intersecting"},
+    CountName{"triangles classified contained"},
+    CountName{"triangles classified surrounding"},
+    CountName{"triangles hidden in quadrants"},
+    CountName{"depth comparisons"},
+    CountName{"exact comparisons"},
 };
 
 /// Divides quadrants of the first level, one after another; each thread has one of its own.
 class Subdivider {
 public:
+    using Counts = sightline::Counts<Count, kCountNames>;
+
     /// Quadrants of 2^direct_bits samples a side, at most those of a Block, are not divided. `out`
     /// outlives this.
     Subdivider(const ScreenScene& screen, const SampleUnits& units, Observer* observer,
