@@ -23,16 +23,6 @@
 namespace sightline {
 namespace {
 
-/// What was done, by many threads.
-struct Counts {
-    std::atomic<std::uint64_t> asked{0}, compared{0};
-
-    void report(const ResolveOptions& options) const {
-        count(options, "rays asked of quadrics", asked);
-        count(options, "quadrics compared with triangles", compared);
-    }
-};
-
 /// Works on one row after another. Each thread has its own.
 class RowOffer {
 public:
@@ -40,16 +30,16 @@ public:
         : screen_(screen), units_(units), observer_(observer) {}
 
     /// `ids` and `depth` are those of row j.
-    void offer(std::int32_t j, std::uint32_t* ids, float* depth, Counts& counts) {
+    void offer(std::int32_t j, std::uint32_t* ids, float* depth) {
         begin_ = units_.columns;
         end_ = 0;
-        std::uint64_t asked = 0, compared = 0;
         const auto all = static_cast<std::uint32_t>(screen_.quadrics().rays.size());
         for (std::uint32_t k = 0; k < all; ++k) asked += find(k, j);
         for (std::int32_t i = begin_; i < end_; ++i) compared += settle(i, j, ids[i], depth[i]);
-        if (asked > 0) counts.asked += asked;
-        if (compared > 0) counts.compared += compared;
     }
+
+    std::uint64_t asked = 0;     ///< rays of quadrics
+    std::uint64_t compared = 0;  ///< quadrics with triangles
 
 private:
     /// Enters where quadric k lies before those asked already; tells how many samples it was asked.
@@ -115,41 +105,60 @@ private:
     Plane plane_;
 };
 
-class QuadricRows : public RowSource {
+/// Works on blocks of rows, any number of them at once.
+class PictureOffer {
 public:
-    QuadricRows(const ScreenScene& screen, const SampleGrid& grid, const ResolveOptions& options,
-                std::unique_ptr<RowSource> triangles)
-        : screen_(screen),
-          units_(grid, screen.subpixel_bits()),
-          options_(options),
-          triangles_(std::move(triangles)) {}
+    PictureOffer(const ScreenScene& screen, const SampleGrid& grid, const ResolveOptions& options)
+        : screen_(screen), units_(grid, screen.subpixel_bits()), options_(options) {}
 
-    [[nodiscard]] std::uint32_t band_rows() const override { return triangles_->band_rows(); }
-
-    void resolve_band(std::uint32_t band, std::uint32_t* ids, float* depth) override {
-        triangles_->resolve_band(band, ids, depth);
-        RowOffer offer(screen_, units_, options_.observer);
-        const auto first = static_cast<std::int32_t>(band * band_rows());
-        const std::int32_t end =
-            std::min(units_.rows, first + static_cast<std::int32_t>(band_rows()));
-        for (std::int32_t j = first; j < end; ++j) {
-            const auto at =
-                static_cast<std::size_t>(j - first) * static_cast<std::size_t>(units_.columns);
-            offer.offer(j, ids + at, depth + at, counts_);
+    /// Rows first .. first + count - 1, as far as the picture has them. `ids` and `depth` begin
+    /// with row `first`.
+    void offer(std::uint32_t first, std::uint32_t count, std::uint32_t* ids, float* depth) {
+        RowOffer row(screen_, units_, options_.observer);
+        const auto begin = static_cast<std::int32_t>(first);
+        const std::int32_t end = std::min(units_.rows, begin + static_cast<std::int32_t>(count));
+        for (std::int32_t j = begin; j < end; ++j) {
+            row.offer(j, ids, depth);
+            ids += units_.columns;
+            depth += units_.columns;
         }
+        asked_ += row.asked;
+        compared_ += row.compared;
     }
 
-    void report() override {
-        triangles_->report();
-        counts_.report(options_);
+    void report() const {
+        count(options_, "rays asked of quadrics", asked_);
+        count(options_, "quadrics compared with triangles", compared_);
     }
 
 private:
     const ScreenScene& screen_;
     SampleUnits units_;
     ResolveOptions options_;
+    std::atomic<std::uint64_t> asked_{0}, compared_{0};
+};
+
+class QuadricRows : public RowSource {
+public:
+    QuadricRows(const ScreenScene& screen, const SampleGrid& grid, const ResolveOptions& options,
+                std::unique_ptr<RowSource> triangles)
+        : triangles_(std::move(triangles)), quadrics_(screen, grid, options) {}
+
+    [[nodiscard]] std::uint32_t band_rows() const override { return triangles_->band_rows(); }
+
+    void resolve_band(std::uint32_t band, std::uint32_t* ids, float* depth) override {
+        triangles_->resolve_band(band, ids, depth);
+        quadrics_.offer(band * band_rows(), band_rows(), ids, depth);
+    }
+
+    void report() override {
+        triangles_->report();
+        quadrics_.report();
+    }
+
+private:
     std::unique_ptr<RowSource> triangles_;
-    Counts counts_;
+    PictureOffer quadrics_;
 };
 
 }  // namespace
@@ -172,18 +181,12 @@ bool is_before_triangle(std::int32_t z, const Plane& triangle, std::int32_t x, s
 void offer_quadrics(const ScreenScene& screen, const ResolveOptions& options, Visibility& out) {
     if (screen.quadrics().rays.empty()) return;
     constexpr std::uint32_t kRows = 16;  // that a thread takes at a time
-    const SampleUnits units(out.grid, screen.subpixel_bits());
-    Counts counts;
+    PictureOffer quadrics(screen, out.grid, options);
     for_each_index((out.grid.rows() + kRows - 1) / kRows, options, [&](std::uint32_t block) {
-        RowOffer offer(screen, units, options.observer);
-        const std::uint32_t end = std::min(out.grid.rows(), (block + 1) * kRows);
-        for (std::uint32_t j = block * kRows; j < end; ++j) {
-            const std::size_t at = std::size_t{j} * out.grid.columns();
-            offer.offer(static_cast<std::int32_t>(j), out.ids.data() + at, out.depth.data() + at,
-                        counts);
-        }
+        const std::size_t at = std::size_t{block} * kRows * out.grid.columns();
+        quadrics.offer(block * kRows, kRows, out.ids.data() + at, out.depth.data() + at);
     });
-    counts.report(options);
+    quadrics.report();
 }
 
 std::unique_ptr<RowSource> offer_quadrics(const ScreenScene& screen, const SampleGrid& grid,
