@@ -51,15 +51,11 @@ public:
     /// `count` unless the rows are the last ones.
     Status resolve(std::uint32_t first, std::uint32_t count) {
         if (source_ == nullptr) return sightline::resolve(algorithm_, screen_, options_, held_);
-        const std::uint32_t rows = count * held_.grid.per_axis, height = source_->band_rows();
+        const std::uint32_t rows = count * held_.grid.per_axis;
         held_.first_row = first * held_.grid.per_axis;
         held_.ids.resize(std::size_t{rows} * held_.grid.columns());
         held_.depth.resize(held_.ids.size());
-        const std::size_t band = std::size_t{height} * held_.grid.columns();
-        for_each_index((rows + height - 1) / height, options_, [&](std::uint32_t b) {
-            source_->resolve_band(held_.first_row / height + b, held_.ids.data() + b * band,
-                                  held_.depth.data() + b * band);
-        });
+        resolve_bands(*source_, options_, held_);
         return success();
     }
 

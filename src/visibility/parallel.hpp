@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <cstddef>
 #include <cstdint>
 
 #include "math/arena.hpp"
@@ -22,6 +23,16 @@ void for_each_index(std::uint32_t n, const ResolveOptions& options, const Body& 
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n), [&](const auto& range) {
             for (std::uint32_t i = range.begin(); i != range.end(); ++i) body(i);
         });
+    });
+}
+
+/// Resolves the rows that `out` holds, band by band. Precondition: they begin with a band.
+inline void resolve_bands(RowSource& source, const ResolveOptions& options, Visibility& out) {
+    const std::uint32_t height = source.band_rows();
+    const std::size_t samples = std::size_t{height} * out.grid.columns();
+    for_each_index((out.rows() + height - 1) / height, options, [&](std::uint32_t b) {
+        source.resolve_band(out.first_row / height + b, out.ids.data() + b * samples,
+                            out.depth.data() + b * samples);
     });
 }
 

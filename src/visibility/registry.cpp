@@ -109,15 +109,6 @@ Status check_surfaces(const Algorithm& algorithm, const ScreenScene& screen) {
                                             "use zbuffer"};
 }
 
-void resolve_bands(RowSource& rows, const ResolveOptions& options, Visibility& out) {
-    const std::size_t band = std::size_t{rows.band_rows()} * out.grid.columns();
-    const std::uint32_t bands = (out.grid.rows() + rows.band_rows() - 1) / rows.band_rows();
-    for_each_index(bands, options, [&](std::uint32_t b) {
-        rows.resolve_band(b, out.ids.data() + b * band, out.depth.data() + b * band);
-    });
-    rows.report();
-}
-
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm, const ScreenScene& screen,
@@ -141,10 +132,14 @@ Status resolve(const Algorithm& algorithm, const ScreenScene& screen, const Reso
                      "the picture has more than 2^28 samples: lower the resolution or the samples"};
     out.ids.resize(out.grid.count());
     out.depth.resize(out.grid.count());
-    if (algorithm.resolve != nullptr)
+    out.first_row = 0;
+    if (algorithm.resolve != nullptr) {
         algorithm.resolve(screen, options, out);
-    else
-        resolve_bands(*algorithm.open_rows(screen, out.grid, options), options, out);
+        return success();
+    }
+    const auto rows = algorithm.open_rows(screen, out.grid, options);
+    resolve_bands(*rows, options, out);
+    rows->report();
     return success();
 }
 
