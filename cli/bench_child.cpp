@@ -14,9 +14,9 @@
 #include <chrono>
 #include <csignal>
 #include <system_error>
-#include <utility>
 
 #include "errors.hpp"
+#include "scene/load/descriptor.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -28,37 +28,16 @@ constexpr std::size_t kMaxOut = std::size_t{1} << 20, kMaxErr = 4096, kMaxShown 
 constexpr int kNotStarted = 127;
 constexpr milliseconds kPatience{2};  // between two looks at a child that has closed its streams
 
-class Descriptor {
-public:
-    Descriptor() = default;
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(fd_, other.fd_);
-        return *this;
-    }
-    ~Descriptor() { reset(); }
-    void reset() {
-        if (fd_ >= 0) close(fd_);
-        fd_ = -1;
-    }
-    [[nodiscard]] int get() const { return fd_; }
-
-private:
-    int fd_ = -1;
-};
-
 struct Pipe {
     Descriptor read, write;
 };
 
-/// Both ends close on exec, and lie above the standard streams, which the child replaces.
+/// Both ends close on exec.
 bool open_pipe(Pipe& pipe) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return false;
-    const Descriptor low_read(ends[0]), low_write(ends[1]);
-    pipe.read = Descriptor(fcntl(ends[0], F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
-    pipe.write = Descriptor(fcntl(ends[1], F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    pipe.read = Descriptor(ends[0]);
+    pipe.write = Descriptor(ends[1]);
     return pipe.read.get() >= 0 && pipe.write.get() >= 0;
 }
 

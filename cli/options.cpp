@@ -55,10 +55,6 @@ constexpr std::array kCommonRows = {
 constexpr std::array<std::string_view, 4> kCullNames = {"auto", "none", "back", "front"};
 constexpr std::array kCulls = {Cull::automatic, Cull::none, Cull::back, Cull::front};
 
-/// One side of a picture, and all its pixels (docs/cli.md).
-constexpr std::uint64_t kMaxSide = 65536;
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;
-
 /// Every value of an enumeration with a name, found by counting up from 0.
 template <class E, std::size_t N>
 std::array<std::string_view, N> enum_names() {
@@ -252,7 +248,7 @@ Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked, Resolu
     return make_camera(options, scene.bounds, resolution);
 }
 
-Resolution read_resolution(OptionReader& reader, Resolution fallback) {
+Resolution read_resolution(OptionReader& reader, Resolution fallback, std::uint64_t max_pixels) {
     const auto text = reader.arguments().value("--resolution");
     if (!text) return fallback;
     const auto size = parse_size(*text);
@@ -264,7 +260,7 @@ Resolution read_resolution(OptionReader& reader, Resolution fallback) {
     } else if (size->x > kMaxSide || size->y > kMaxSide) {
         reader.fail(wrong_use("--resolution: '{}' is over {} pixels a side; choose a smaller one",
                               *text, kMaxSide));
-    } else if (size->x * size->y > kMaxPixels) {
+    } else if (size->x * size->y > max_pixels) {
         reader.fail(wrong_use("--resolution: '{}' is over 2^28 pixels in all; choose a smaller one",
                               *text));
     } else {

@@ -106,8 +106,10 @@ struct CommonOptions {
 [[nodiscard]] Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked,
                                         Resolution resolution);
 
-/// --resolution within the limits of the algorithms that keep the whole picture in memory.
-[[nodiscard]] Resolution read_resolution(OptionReader& reader, Resolution fallback);
+/// --resolution within the limits of project(). Those of all pixels together are by default the
+/// ones of resolve(), which keeps the whole picture in memory.
+[[nodiscard]] Resolution read_resolution(OptionReader& reader, Resolution fallback,
+                                         std::uint64_t max_pixels = kMaxSamples);
 
 /// auto, none, back, front.
 [[nodiscard]] std::string_view name_of(Cull cull);

@@ -14,8 +14,6 @@
 namespace sightline::cli {
 namespace {
 
-constexpr std::uint64_t kMaxSide = 65536;                      // what project() takes
-constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;  // what resolve() takes
 constexpr std::uint64_t kMaxPerAxis = 8;
 
 /// Linear light, premultiplied.
@@ -35,12 +33,11 @@ std::string_view algorithm_for_large_pictures() {
 
 /// An error unless the algorithm can hold so many samples.
 std::optional<Error> check_samples(const Algorithm& algorithm, std::string_view option,
-                                   glm::u64vec2 size, std::uint64_t samples) {
-    if (algorithm.open_rows != nullptr || size.x * size.y * samples <= kMaxSamples) {
-        return std::nullopt;
-    }
+                                   Resolution size, std::uint64_t samples) {
+    const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
+    if (algorithm.open_rows != nullptr || pixels * samples <= kMaxSamples) return std::nullopt;
     return wrong_use("{}: {} a pixel at {}x{} are over 2^28 samples; use --algorithm {}", option,
-                     samples, size.x, size.y, algorithm_for_large_pictures());
+                     samples, size.width, size.height, algorithm_for_large_pictures());
 }
 
 /// Times the stages and tells the terminal of them.
@@ -79,17 +76,11 @@ void use_exr_threads(int threads) {
 }  // namespace
 
 void read_size(OptionReader& reader, RenderOptions& options) {
-    const auto text = reader.arguments().value("--resolution");
-    const auto size = text ? parse_size(*text) : std::nullopt;
-    const auto is_side = [](std::uint64_t side) { return side > 0 && side <= kMaxSide; };
-    if (size && is_side(size->x) && is_side(size->y)) {
-        if (auto error = check_samples(*options.algorithm, "--resolution", *size, 1)) {
-            reader.fail(std::move(*error));
-        }
-        options.resolution = {static_cast<std::uint32_t>(size->x),
-                              static_cast<std::uint32_t>(size->y)};
-    } else {
-        options.resolution = read_resolution(reader, Resolution{});
+    // All pixels together are the algorithm's business.
+    options.resolution =
+        read_resolution(reader, Resolution{}, std::uint64_t{kMaxSide} * std::uint64_t{kMaxSide});
+    if (auto error = check_samples(*options.algorithm, "--resolution", options.resolution, 1)) {
+        reader.fail(std::move(*error));
     }
 
     const std::string expected = "a square grid of samples: 1, 4, 16 or 64";
@@ -102,9 +93,7 @@ void read_size(OptionReader& reader, RenderOptions& options) {
         return;
     }
     options.per_axis = n;
-    if (auto error =
-            check_samples(*options.algorithm, "--samples",
-                          {options.resolution.width, options.resolution.height}, *samples)) {
+    if (auto error = check_samples(*options.algorithm, "--samples", options.resolution, *samples)) {
         reader.fail(std::move(*error));
     }
 }

@@ -40,6 +40,8 @@ struct CameraOptions {
     std::optional<double> near_plane, far_plane;  ///< depths; fitted to the scene when absent
 };
 
+inline constexpr std::uint32_t kMaxSide = 65536;  ///< largest width or height of a picture
+
 /// Size of a picture in pixels.
 struct Resolution {
     std::uint32_t width = 1024, height = 768;

@@ -35,6 +35,9 @@ struct SampleGrid {
     [[nodiscard]] std::int32_t offset(int subpixel_bits) const { return step(subpixel_bits) / 2; }
 };
 
+/// The largest grid that resolve() takes.
+inline constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;
+
 /// What is seen at the samples of a grid: ids and depth, row by row from the top; of all rows, or
 /// of a band of a picture that is made in bands.
 struct Visibility {

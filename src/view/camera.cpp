@@ -20,7 +20,6 @@ namespace {
 constexpr double kFitMargin = 1.05;    // of the bounding sphere
 constexpr double kDepthMargin = 1e-3;  // of the depth range, on both sides of near and far
 constexpr double kNearOverFar = 1e-4;  // smallest near in perspective when it is fitted
-constexpr std::uint32_t kMaxSide = 65536;
 
 Error wrong(std::string message) { return {ErrorKind::bad_option, std::move(message)}; }
 

@@ -13,7 +13,6 @@ namespace sightline {
 namespace {
 
 constexpr std::uint32_t kMaxSamplesPerAxis = 16;
-constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 28;
 
 /// An algorithm for triangles, with the quadrics offered after it.
 template <auto Resolve>

@@ -24,33 +24,13 @@
 #include <new>
 #include <utility>
 
+#include "scene/load/descriptor.hpp"
+
 namespace sightline::load {
 namespace {
 
 // Exit statuses of the child.
 constexpr int kDone = 0, kOutOfMemory = 3, kThrew = 4, kNotHandedOver = 5;
-
-/// A file descriptor that closes itself.
-class Descriptor {
-public:
-    /// Takes `fd` over, moved away from the standard streams, which the child replaces.
-    explicit Descriptor(int fd) : fd_(fd) {
-        if (fd_ < 0 || fd_ > STDERR_FILENO) return;
-        fd_ = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-        close(fd);
-    }
-    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    Descriptor& operator=(Descriptor&&) = delete;
-    ~Descriptor() { reset(); }
-    void reset() {
-        if (fd_ >= 0) close(fd_);
-        fd_ = -1;
-    }
-    [[nodiscard]] int get() const { return fd_; }
-
-private:
-    int fd_;
-};
 
 Error system_error(const std::string& name, const char* what) {
     return {ErrorKind::io, fmt::format("{}: cannot start a process to read it ({}: {}); free some "

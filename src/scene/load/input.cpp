@@ -57,11 +57,11 @@ Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, 
 }
 
 Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd < 0) return refused(path, errno);
-    InputFile file(fd, path, limit);
+    Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (descriptor.get() < 0) return refused(path, errno);
+    InputFile file(std::move(descriptor), path, limit);
     struct stat info {};
-    if (fstat(fd, &info) != 0) return refused(path, errno);
+    if (fstat(file.descriptor_.get(), &info) != 0) return refused(path, errno);
     if (S_ISDIR(info.st_mode)) {
         return Error{ErrorKind::bad_input,
                      fmt::format("{}: it is a folder; name a model file in it", path)};
@@ -72,23 +72,12 @@ Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
     return file;
 }
 
-InputFile::InputFile(InputFile&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)),
-      path_(std::move(other.path_)),
-      limit_(other.limit_),
-      regular_(other.regular_),
-      size_(other.size_) {}
-
-InputFile::~InputFile() {
-    if (fd_ >= 0) close(fd_);
-}
-
 Result<std::vector<std::byte>> InputFile::read_all() const {
-    return read_descriptor(fd_, path_, limit_, size_);
+    return read_descriptor(descriptor_.get(), path_, limit_, size_);
 }
 
 Result<std::vector<std::byte>> InputFile::read_beginning(std::size_t size) const {
-    return read_up_to(fd_, path_, size);
+    return read_up_to(descriptor_.get(), path_, size);
 }
 
 }  // namespace sightline::load

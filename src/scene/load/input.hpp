@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/load/descriptor.hpp"
 #include "sightline/error.hpp"
 
 namespace sightline::load {
@@ -15,15 +16,12 @@ namespace sightline::load {
                                                              std::size_t limit,
                                                              std::size_t expected = 0);
 
-/// A file open for reading. Movable; closes itself.
+/// A file open for reading. Movable.
 class InputFile {
 public:
     /// Errors: io when it is missing or may not be read; bad_input when it is a folder, or a
     /// regular file of more than `limit` bytes.
     [[nodiscard]] static Result<InputFile> open(const std::string& path, std::size_t limit);
-    InputFile(InputFile&& other) noexcept;
-    InputFile& operator=(InputFile&&) = delete;
-    ~InputFile();
 
     [[nodiscard]] bool is_regular() const { return regular_; }
     [[nodiscard]] Result<std::vector<std::byte>> read_all() const;
@@ -31,10 +29,10 @@ public:
     [[nodiscard]] Result<std::vector<std::byte>> read_beginning(std::size_t size) const;
 
 private:
-    InputFile(int fd, std::string path, std::size_t limit)
-        : fd_(fd), path_(std::move(path)), limit_(limit) {}
+    InputFile(Descriptor descriptor, std::string path, std::size_t limit)
+        : descriptor_(std::move(descriptor)), path_(std::move(path)), limit_(limit) {}
 
-    int fd_;
+    Descriptor descriptor_;
     std::string path_;
     std::size_t limit_;
     bool regular_ = false;
