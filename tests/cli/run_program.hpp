@@ -13,12 +13,12 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "support/files.hpp"
 
 namespace sightline::testing {
 
@@ -30,15 +30,6 @@ struct Outcome {
 
     [[nodiscard]] long error_lines() const { return std::count(err.begin(), err.end(), '\n'); }
 };
-
-inline std::string read_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-inline void write_file(const fs::path& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
 
 /// A unit cube of six quads with outward normals, closed.
 inline const std::string kCube =
@@ -90,15 +81,10 @@ private:
 class ProgramTest : public ::testing::Test {
 protected:
     void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "sightline-test-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        root_ = pattern;
-        folder_ = root_ / "work";
         fs::create_directories(folder_);
-        fs::create_directories(root_ / "streams");
+        fs::create_directories(streams_);
         write("cube.obj", kCube);
     }
-    void TearDown() override { fs::remove_all(root_); }
 
     void write(const std::string& name, const std::string& text) const {
         write_file(folder_ / name, text);
@@ -118,7 +104,7 @@ protected:
 
     [[nodiscard]] Running start(std::vector<std::string> words,
                                 const std::string& input = "") const {
-        return {folder_, std::move(words), input, root_ / "streams"};
+        return {folder_, std::move(words), input, streams_};
     }
     [[nodiscard]] Outcome run(std::vector<std::string> words, const std::string& input = "") const {
         return start(std::move(words), input).wait();
@@ -144,7 +130,8 @@ protected:
         EXPECT_EQ(files(), before);
     }
 
-    fs::path root_, folder_;
+    const TemporaryFolder root_;
+    const fs::path folder_ = root_.file("work"), streams_ = root_.file("streams");
 };
 
 /// Width and height of a PNG, or zeros when the bytes are none.

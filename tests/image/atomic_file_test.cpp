@@ -11,14 +11,14 @@
 #include <filesystem>
 #include <string>
 
-#include "image/temporary_folder.hpp"
+#include "support/files.hpp"
 
 namespace {
 
 using namespace sightline;
-using test::read_bytes;
-using test::TemporaryFolder;
-using test::write_bytes;
+using sightline::testing::read_file;
+using sightline::testing::TemporaryFolder;
+using sightline::testing::write_file;
 
 AtomicFile open_file(const std::string& path,
                      AtomicFile::Access access = AtomicFile::Access::sequential) {
@@ -35,20 +35,20 @@ TEST(AtomicFile, AppearsOnCommitOnly) {
     EXPECT_TRUE(file.write("two", 3).ok());
     EXPECT_FALSE(std::filesystem::exists(path));
     EXPECT_TRUE(file.commit().ok());
-    EXPECT_EQ(read_bytes(path), "one two");
+    EXPECT_EQ(read_file(path), "one two");
     EXPECT_EQ(folder.count(), 1);
 }
 
 TEST(AtomicFile, WithoutCommitTheOldFileStaysAndNothingElse) {
     const TemporaryFolder folder;
     const std::string path = folder.file("a.bin");
-    write_bytes(path, "old");
+    write_file(path, "old");
     {
         AtomicFile file = open_file(path);
         EXPECT_TRUE(file.write("new", 3).ok());
         EXPECT_EQ(folder.count(), 2);
     }
-    EXPECT_EQ(read_bytes(path), "old");
+    EXPECT_EQ(read_file(path), "old");
     EXPECT_EQ(folder.count(), 1);
 }
 
@@ -63,7 +63,7 @@ TEST(AtomicFile, ManyWritesAndSeeksArriveInPlace) {
     ASSERT_TRUE(file.write("HELLO", 5).ok());
     EXPECT_EQ(file.position(), 10u);
     ASSERT_TRUE(file.commit().ok());
-    const std::string bytes = read_bytes(path);
+    const std::string bytes = read_file(path);
     ASSERT_EQ(bytes.size(), 1'600'000u);
     EXPECT_EQ(bytes.substr(0, 12), "xxxxxHELLOxx");
     EXPECT_EQ(bytes[999'999], 'x');
@@ -132,14 +132,14 @@ TEST(AtomicFile, FullDiskEndsInAnErrorThatSticks) {
         for (int i = 0; i < 4; ++i) failed = !file.write(block.data(), block.size()).ok();
         failed = failed && !file.commit().ok();
     }
-    ::_exit(failed && folder.count() == 1 && read_bytes(path) == "old" ? 0 : 1);
+    ::_exit(failed && folder.count() == 1 && read_file(path) == "old" ? 0 : 1);
 }
 
 TEST(AtomicFileDeathTest, DiskThatFillsUpLeavesNothing) {
     const TemporaryFolder folder;
     const std::string path = folder.file("a.bin");
-    write_bytes(path, "old");
-    EXPECT_EXIT(fill_the_disk(folder, path), testing::ExitedWithCode(0), "");
+    write_file(path, "old");
+    EXPECT_EXIT(fill_the_disk(folder, path), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(AtomicFile, DevicesAreWrittenAndNotReplaced) {
@@ -159,24 +159,24 @@ TEST(AtomicFileDeathTest, StandardOutputGetsSoughtBytesInOrder) {
             ::dup2(out, STDOUT_FILENO);
             AtomicFile file = open_file("-", AtomicFile::Access::seekable);
             bool ok = file.write("abcdef", 6).ok() && file.seek(2).ok() && file.write("XY", 2).ok();
-            ok = ok && read_bytes(path).empty() && file.commit().ok();
+            ok = ok && read_file(path).empty() && file.commit().ok();
             ::_exit(ok ? 0 : 1);
         },
-        testing::ExitedWithCode(0), "");
-    EXPECT_EQ(read_bytes(path), "abXYef");
+        ::testing::ExitedWithCode(0), "");
+    EXPECT_EQ(read_file(path), "abXYef");
 }
 
 TEST(AtomicFile, KeepsLinksAndPermissions) {
     const TemporaryFolder folder;
     const std::string path = folder.file("real"), link = folder.file("link");
-    write_bytes(path, "old");
+    write_file(path, "old");
     std::filesystem::permissions(path, std::filesystem::perms{0640});
     std::filesystem::create_symlink(path, link);
     AtomicFile file = open_file(link);
     EXPECT_TRUE(file.write("new", 3).ok());
     EXPECT_TRUE(file.commit().ok());
     EXPECT_TRUE(std::filesystem::is_symlink(link));
-    EXPECT_EQ(read_bytes(path), "new");
+    EXPECT_EQ(read_file(path), "new");
     EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms{0640});
 }
 
@@ -188,7 +188,7 @@ TEST(AtomicFile, MovesKeepTheFile) {
     second = std::move(first);  // b is abandoned
     EXPECT_EQ(folder.count(), 1);
     EXPECT_TRUE(second.commit().ok());
-    EXPECT_EQ(read_bytes(folder.file("a")), "a");
+    EXPECT_EQ(read_file(folder.file("a")), "a");
     EXPECT_FALSE(std::filesystem::exists(folder.file("b")));
 }
 
@@ -207,7 +207,7 @@ TEST(AtomicFileDeathTest, SignalHandlerRemovesWhatIsOpenAndSparesWhatIsDone) {
             if (ok) ::raise(SIGINT);
             ::_exit(1);
         },
-        testing::ExitedWithCode(7), "");
+        ::testing::ExitedWithCode(7), "");
     EXPECT_EQ(folder.count(), 1);
     EXPECT_TRUE(std::filesystem::exists(folder.file("done")));
 }

@@ -15,15 +15,15 @@
 #include <vector>
 
 #include "image/exr_writer.hpp"
-#include "image/temporary_folder.hpp"
 #include "sightline/image.hpp"
 #include "sightline/scene.hpp"
+#include "support/files.hpp"
 
 namespace {
 
 using namespace sightline;
-using test::read_bytes;
-using test::TemporaryFolder;
+using sightline::testing::read_file;
+using sightline::testing::TemporaryFolder;
 
 constexpr std::uint32_t kWidth = 23, kHeight = 150;  // neither a multiple of any block
 
@@ -117,8 +117,8 @@ TEST(Exr, BytesDependOnThePixelsOnly) {
         ASSERT_TRUE(writer->write_rows(row, 1).ok());
     }
     ASSERT_TRUE(writer->finish().ok());
-    EXPECT_EQ(read_bytes(folder.file("a.exr")), read_bytes(folder.file("b.exr")));
-    EXPECT_EQ(read_bytes(folder.file("a.exr")), read_bytes(folder.file("c.exr")));
+    EXPECT_EQ(read_file(folder.file("a.exr")), read_file(folder.file("b.exr")));
+    EXPECT_EQ(read_file(folder.file("a.exr")), read_file(folder.file("c.exr")));
 }
 
 TEST(Exr, FailuresAreValuesAndLeaveNothing) {

@@ -4,14 +4,14 @@
 #include <cstring>
 #include <string>
 
-#include "image/temporary_folder.hpp"
 #include "sightline/image.hpp"
+#include "support/files.hpp"
 
 namespace {
 
 using namespace sightline;
-using test::read_bytes;
-using test::TemporaryFolder;
+using sightline::testing::read_file;
+using sightline::testing::TemporaryFolder;
 
 /// Checks magic, version, alignment and the header's text; what follows are the elements.
 std::string data_of(const std::string& bytes, const std::string& header) {
@@ -42,24 +42,24 @@ TEST(Npy, EveryKindOfMap) {
     DepthImage depth(3, 2);
     depth.pixels = {1, 2, 3, 4, 5, 6};
     ASSERT_TRUE(write_npy(path, depth).ok());
-    expect_data(data_of(read_bytes(path), header("<f4", "(2, 3)")), depth);
+    expect_data(data_of(read_file(path), header("<f4", "(2, 3)")), depth);
 
     IdImage ids(3, 2);
     ids.pixels = {1, 2, 3, 4, 5, 0xFFFFFFFF};
     ASSERT_TRUE(write_npy(path, ids).ok());
-    expect_data(data_of(read_bytes(path), header("<u4", "(2, 3)")), ids);
+    expect_data(data_of(read_file(path), header("<u4", "(2, 3)")), ids);
 
     const NormalImage normals(3, 2, glm::vec3(1, 2, 3));
     ASSERT_TRUE(write_npy(path, normals).ok());
-    expect_data(data_of(read_bytes(path), header("<f4", "(2, 3, 3)")), normals);
+    expect_data(data_of(read_file(path), header("<f4", "(2, 3, 3)")), normals);
 
     const MaskImage mask(3, 2, 1);
     ASSERT_TRUE(write_npy(path, mask).ok());
-    expect_data(data_of(read_bytes(path), header("|u1", "(2, 3)")), mask);
+    expect_data(data_of(read_file(path), header("|u1", "(2, 3)")), mask);
 
     const ColorImage color(3, 2, glm::vec4(1, 2, 3, 4));
     ASSERT_TRUE(write_npy(path, color).ok());
-    expect_data(data_of(read_bytes(path), header("<f4", "(2, 3, 4)")), color);
+    expect_data(data_of(read_file(path), header("<f4", "(2, 3, 4)")), color);
     EXPECT_EQ(folder.count(), 1);
 }
 

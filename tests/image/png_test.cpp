@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "image/png_writer.hpp"
-#include "image/temporary_folder.hpp"
 #include "sightline/image.hpp"
+#include "support/files.hpp"
 
 namespace {
 
 using namespace sightline;
-using test::read_bytes;
-using test::TemporaryFolder;
+using sightline::testing::read_file;
+using sightline::testing::TemporaryFolder;
 
 /// A file as it stands: its pixels in the format in which they are stored.
 struct Decoded {
@@ -137,7 +137,7 @@ TEST(Png, BytesDependOnThePixelsOnly) {
     const ColorImage image = noise(200, 100);
     ASSERT_TRUE(write_color_png(folder.file("a.png"), image).ok());
     ASSERT_TRUE(write_color_png(folder.file("b.png"), image).ok());
-    EXPECT_EQ(read_bytes(folder.file("a.png")), read_bytes(folder.file("b.png")));
+    EXPECT_EQ(read_file(folder.file("a.png")), read_file(folder.file("b.png")));
 
     const std::vector<std::uint8_t> rows(64 * 50, 77);
     const auto write = [&](const char* name, std::size_t rows_per_call) {
@@ -152,7 +152,7 @@ TEST(Png, BytesDependOnThePixelsOnly) {
     };
     write("c.png", 1);
     write("d.png", 25);
-    EXPECT_EQ(read_bytes(folder.file("c.png")), read_bytes(folder.file("d.png")));
+    EXPECT_EQ(read_file(folder.file("c.png")), read_file(folder.file("d.png")));
 }
 
 TEST(Png, BytesDoNotDependOnCallsOrThreads) {
@@ -176,7 +176,7 @@ TEST(Png, BytesDoNotDependOnCallsOrThreads) {
 
     auto at_once = create("1.png");
     ASSERT_TRUE(at_once.ok() && at_once->write_rows(rows).ok() && at_once->finish().ok());
-    EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("1.png")));
+    EXPECT_EQ(read_file(folder.file("0.png")), read_file(folder.file("1.png")));
     for (const int threads : {1, 2, 8}) {
         auto writer = create("2.png");
         ASSERT_TRUE(writer.ok());
@@ -184,7 +184,7 @@ TEST(Png, BytesDoNotDependOnCallsOrThreads) {
             std::memcpy(out, rows.data() + first * row_bytes, count * row_bytes);
         };
         ASSERT_TRUE(writer->write_rows(source, height, threads).ok() && writer->finish().ok());
-        EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("2.png")));
+        EXPECT_EQ(read_file(folder.file("0.png")), read_file(folder.file("2.png")));
         // A band has 65 rows: groups that end inside of one, at its end, and reach over several.
         for (const std::uint32_t group : {1u, 64u, 65u, 66u, 200u}) {
             auto grouped = create("3.png");
@@ -193,7 +193,7 @@ TEST(Png, BytesDoNotDependOnCallsOrThreads) {
                 ASSERT_TRUE(grouped->write_rows(source, std::min(group, height - y), threads).ok());
             }
             ASSERT_TRUE(grouped->finish().ok());
-            EXPECT_EQ(read_bytes(folder.file("0.png")), read_bytes(folder.file("3.png"))) << group;
+            EXPECT_EQ(read_file(folder.file("0.png")), read_file(folder.file("3.png"))) << group;
         }
     }
 }

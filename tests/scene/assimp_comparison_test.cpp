@@ -10,6 +10,7 @@
 #include "scene/load/build.hpp"
 #include "scene/load/text.hpp"
 #include "scene/meshes.hpp"
+#include "support/files.hpp"
 #include "support/models.hpp"
 
 namespace sightline {
@@ -18,7 +19,7 @@ namespace {
 using scene_test::load_one;
 using scene_test::loaded;
 using scene_test::raw;
-using scene_test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 Scene read_by_assimp(const std::string& path) {
     const auto soup = load::read_with_assimp({path, path, load::extension_of(path), {}});

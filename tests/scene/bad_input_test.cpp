@@ -4,6 +4,7 @@
 
 #include "scene/meshes.hpp"
 #include "sightline/load.hpp"
+#include "support/files.hpp"
 
 namespace sightline {
 namespace {
@@ -12,7 +13,7 @@ using scene_test::load_one;
 using scene_test::load_text;
 using scene_test::message_of;
 using scene_test::raw;
-using scene_test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 const std::string kPoints = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
 

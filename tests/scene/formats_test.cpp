@@ -5,6 +5,7 @@
 #include "scene/meshes.hpp"
 #include "sightline/image.hpp"
 #include "sightline/load.hpp"
+#include "support/files.hpp"
 
 namespace sightline {
 namespace {
@@ -13,7 +14,7 @@ using scene_test::load_one;
 using scene_test::load_text;
 using scene_test::loaded;
 using scene_test::raw;
-using scene_test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 // A square of one quad with a triangle hinged to it, two polygons on five points.
 const char* const kObj =

@@ -11,6 +11,7 @@
 #include "scene/load/reader.hpp"
 #include "scene/load/scan.hpp"
 #include "scene/meshes.hpp"
+#include "support/files.hpp"
 
 namespace sightline {
 namespace {
@@ -19,7 +20,7 @@ using scene_test::load_one;
 using scene_test::load_text;
 using scene_test::loaded;
 using scene_test::message_of;
-using scene_test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 

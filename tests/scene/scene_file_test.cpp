@@ -5,6 +5,7 @@
 #include "scene/meshes.hpp"
 #include "sightline/image.hpp"
 #include "sightline/load.hpp"
+#include "support/files.hpp"
 
 namespace sightline {
 namespace {
@@ -14,7 +15,7 @@ using load::SceneDescription;
 using scene_test::load_one;
 using scene_test::loaded;
 using scene_test::message_of;
-using scene_test::TemporaryFolder;
+using testing::TemporaryFolder;
 
 std::string error_in(const std::string& text) {
     const Result<SceneDescription> result = parse_scene_description(text, "scene.json");

@@ -4,12 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "image/temporary_folder.hpp"
 #include "shading/draw_groups.hpp"
 #include "shading/view_of.hpp"
+#include "support/files.hpp"
+#include "support/scenes.hpp"
 
 namespace sightline::test {
 namespace {
+
+using testing::read_file;
+using testing::SceneBuilder;
+using testing::TemporaryFolder;
 
 /// A bowl of smooth triangles, each of its own colour, and two that cross it.
 Scene bowl() {
@@ -123,7 +128,7 @@ void expect_same_bytes(Resolution resolution, std::uint32_t per_axis) {
     const Files expected = all_files(folder, "expected-"), drawn = all_files(folder, "drawn-");
     write_whole(samples, centres, expected);
     std::vector<std::string> bytes;
-    for (const PictureFile& file : expected.list) bytes.push_back(read_bytes(file.path));
+    for (const PictureFile& file : expected.list) bytes.push_back(read_file(file.path));
     for (const char* name : kAlgorithms) {
         // Groups of as few rows as the bands allow, and as they are by default.
         for (const std::uint32_t group : {1u, 0u}) {
@@ -133,7 +138,7 @@ void expect_same_bytes(Resolution resolution, std::uint32_t per_axis) {
                                options_of(per_axis, group == 1 ? 3 : 1), drawn.list, group);
             ASSERT_TRUE(done.ok()) << done.error().message;
             for (std::size_t i = 0; i < drawn.list.size(); ++i) {
-                EXPECT_TRUE(read_bytes(drawn.list[i].path) == bytes[i]) << drawn.list[i].path;
+                EXPECT_TRUE(read_file(drawn.list[i].path) == bytes[i]) << drawn.list[i].path;
             }
         }
     }
@@ -162,7 +167,7 @@ TEST(Draw, EachOutputAlone) {
         const Status done = draw_in_groups(view.screen, *find_algorithm("spans"), options_of(2, 2),
                                            {&drawn.list[i], 1}, 1);
         ASSERT_TRUE(done.ok()) << done.error().message;
-        EXPECT_TRUE(read_bytes(drawn.list[i].path) == read_bytes(expected.list[i].path))
+        EXPECT_TRUE(read_file(drawn.list[i].path) == read_file(expected.list[i].path))
             << drawn.list[i].path;
     }
 }

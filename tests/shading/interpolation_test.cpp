@@ -8,12 +8,13 @@
 
 #include "shading/surface.hpp"
 #include "shading/view_of.hpp"
+#include "support/scenes.hpp"
 
 namespace {
 
 using namespace sightline;
+using sightline::testing::SceneBuilder;
 using test::forward_camera;
-using test::SceneBuilder;
 using test::View;
 using test::view_of;
 

@@ -6,12 +6,13 @@
 #include <glm/geometric.hpp>
 
 #include "shading/view_of.hpp"
+#include "support/scenes.hpp"
 
 namespace {
 
 using namespace sightline;
+using sightline::testing::SceneBuilder;
 using test::forward_camera;
-using test::SceneBuilder;
 using test::View;
 using test::view_of;
 

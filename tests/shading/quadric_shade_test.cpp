@@ -5,6 +5,7 @@
 
 #include "shading/quadric_surface.hpp"
 #include "shading/view_of.hpp"
+#include "support/scenes.hpp"
 
 namespace sightline {
 namespace {
@@ -16,7 +17,7 @@ const glm::dvec3 kCentre{0.2, -0.1, -4};
 
 /// A ball before a wall.
 Scene ball_scene() {
-    test::SceneBuilder b;
+    testing::SceneBuilder b;
     b.polygon({{-9, -9, -6}, {9, -9, -6}, {9, 9, -6}, {-9, 9, -6}});
     Material matt;
     matt.specular = 0;

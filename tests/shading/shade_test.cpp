@@ -9,15 +9,18 @@
 #include <random>
 #include <set>
 
-#include "image/temporary_folder.hpp"
 #include "shading/id_colors.hpp"
 #include "shading/view_of.hpp"
+#include "support/files.hpp"
+#include "support/scenes.hpp"
 
 namespace {
 
 using namespace sightline;
+using sightline::testing::read_file;
+using sightline::testing::SceneBuilder;
+using sightline::testing::TemporaryFolder;
 using test::forward_camera;
-using test::SceneBuilder;
 using test::View;
 using test::view_of;
 
@@ -167,7 +170,7 @@ TEST(Shade, BytesAreTheSameOnEveryMachine) {
 }
 
 TEST(Shade, WrittenBandByBandIsThePictureWrittenAtOnce) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     SceneBuilder builder = many_triangles();
     for (const std::uint32_t samples : {1u, 2u}) {
         // High enough for several bands.
@@ -180,8 +183,7 @@ TEST(Shade, WrittenBandByBandIsThePictureWrittenAtOnce) {
                 ASSERT_TRUE(write_shaded_png(folder.file("b.png"), view.screen, view.visibility,
                                              {shading, background, threads})
                                 .ok());
-                EXPECT_EQ(test::read_bytes(folder.file("a.png")),
-                          test::read_bytes(folder.file("b.png")))
+                EXPECT_EQ(read_file(folder.file("a.png")), read_file(folder.file("b.png")))
                     << name_of(shading) << ' ' << threads;
             }
         }

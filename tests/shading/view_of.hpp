@@ -3,11 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <initializer_list>
-#include <vector>
 
 #include "sightline/camera.hpp"
 #include "sightline/scene.hpp"
@@ -16,47 +13,6 @@
 #include "sightline/visibility.hpp"
 
 namespace sightline::test {
-
-/// A scene of one object with one matt grey material; fill it, then view it.
-class SceneBuilder {
-public:
-    SceneBuilder() {
-        scene.objects.resize(1);
-        scene.materials.resize(1);
-        scene.materials[0].specular = 0;
-    }
-
-    /// Adds one polygon as a fan.
-    void polygon(std::initializer_list<glm::dvec3> corners) {
-        const auto first = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.insert(scene.positions.end(), corners);
-        const auto count = static_cast<std::uint32_t>(corners.size());
-        for (std::uint32_t k = 2; k < count; ++k) {
-            scene.triangles.push_back({first, first + k - 1, first + k});
-            scene.triangle_polygon.push_back(polygons_);
-            scene.polygon_edges.push_back(7);
-        }
-        ++polygons_;
-        scene.objects[0].triangle_count = scene.triangle_count();
-        scene.objects[0].polygon_count = polygons_;
-    }
-
-    /// One normal for each position.
-    void vertex_normals(std::vector<glm::vec3> normals) {
-        scene.normals = std::move(normals);
-        scene.triangle_normals = scene.triangles;
-    }
-    /// One colour for each position.
-    void vertex_colors(std::vector<glm::vec4> colors) {
-        scene.colors = std::move(colors);
-        scene.triangle_colors = scene.triangles;
-    }
-
-    Scene scene;
-
-private:
-    std::uint32_t polygons_ = 0;
-};
 
 /// A scene made ready, projected and resolved. The scene must outlive it.
 struct View {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 namespace sightline::testing {
 
@@ -27,22 +28,26 @@ glm::dvec3 Random::point(double extent) {
     return {x, y, uniform(-extent, extent)};
 }
 
-void SceneBuilder::add(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, std::uint8_t edges) {
-    corners_.insert(corners_.end(), {a, b, c});
-    edges_.push_back(edges);
-    polygons_.push_back(polygon_count_);
+SceneBuilder::SceneBuilder() {
+    scene.materials.resize(1);
+    scene.materials[0].specular = 0;
+    scene.objects.resize(1);
+    scene.objects[0].name = "object";
 }
 
-SceneBuilder& SceneBuilder::triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-    add(a, b, c, 7);
-    ++polygon_count_;
-    return *this;
-}
-
-SceneBuilder& SceneBuilder::quad(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
-    add(a, b, c, 3);
-    add(a, c, d, 6);
-    ++polygon_count_;
+SceneBuilder& SceneBuilder::polygon(std::initializer_list<glm::dvec3> corners) {
+    Object& object = scene.objects[0];
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    const auto count = static_cast<std::uint32_t>(corners.size());
+    scene.positions.insert(scene.positions.end(), corners);
+    for (std::uint32_t k = 2; k < count; ++k) {
+        scene.triangles.push_back({first, first + k - 1, first + k});
+        scene.triangle_polygon.push_back(object.polygon_count);
+        const int edges = 2 | (k == 2 ? 1 : 0) | (k == count - 1 ? 4 : 0);
+        scene.polygon_edges.push_back(static_cast<std::uint8_t>(edges));
+    }
+    object.triangle_count = scene.triangle_count();
+    scene.counts.polygons = ++object.polygon_count;
     return *this;
 }
 
@@ -58,31 +63,31 @@ SceneBuilder& SceneBuilder::box(glm::dvec3 lo, glm::dvec3 hi) {
     return quad(at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
 }
 
+void SceneBuilder::vertex_normals(std::vector<glm::vec3> normals) {
+    scene.normals = std::move(normals);
+    scene.triangle_normals = scene.triangles;
+}
+
+void SceneBuilder::vertex_colors(std::vector<glm::vec4> colors) {
+    scene.colors = std::move(colors);
+    scene.triangle_colors = scene.triangles;
+}
+
 Scene SceneBuilder::build() const {
-    Scene scene;
+    Scene joined = scene;
+    joined.positions.clear();
     std::map<std::tuple<double, double, double>, std::uint32_t> known;
-    for (std::size_t t = 0; t < edges_.size(); ++t) {
-        Corners corners{};
+    for (Corners& corners : joined.triangles) {
         for (int k = 0; k < 3; ++k) {
-            const glm::dvec3& p = corners_[3 * t + static_cast<std::size_t>(k)];
+            const glm::dvec3& p = scene.positions[corners[k]];
             const auto [it, fresh] = known.try_emplace(
-                {p.x, p.y, p.z}, static_cast<std::uint32_t>(scene.positions.size()));
-            if (fresh) scene.positions.push_back(p);
+                {p.x, p.y, p.z}, static_cast<std::uint32_t>(joined.positions.size()));
+            if (fresh) joined.positions.push_back(p);
             corners[k] = it->second;
         }
-        scene.triangles.push_back(corners);
     }
-    scene.polygon_edges = edges_;
-    scene.triangle_polygon = polygons_;
-    Object object;
-    object.name = "object";
-    object.triangle_count = scene.triangle_count();
-    object.polygon_count = polygon_count_;
-    scene.objects.push_back(object);
-    scene.materials.emplace_back();
-    scene.counts.polygons = polygon_count_;
-    finish_scene(scene);
-    return scene;
+    finish_scene(joined);
+    return joined;
 }
 
 namespace {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -26,23 +28,27 @@ private:
     std::uint64_t state_;
 };
 
-/// Collects triangles, then makes a finished scene of one object.
+/// Collects polygons as one object of one matt grey material.
 class SceneBuilder {
 public:
-    SceneBuilder& triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c);
-    /// Two triangles with the diagonal a-c, of one source polygon.
-    SceneBuilder& quad(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d);
+    SceneBuilder();
+    /// A fan; corners are this polygon's own.
+    SceneBuilder& polygon(std::initializer_list<glm::dvec3> corners);
+    SceneBuilder& triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) { return polygon({a, b, c}); }
+    SceneBuilder& quad(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
+        return polygon({a, b, c, d});
+    }
     /// Twelve triangles, fronts outside.
     SceneBuilder& box(glm::dvec3 lo, glm::dvec3 hi);
-    [[nodiscard]] Scene build() const;
-    [[nodiscard]] std::size_t size() const { return corners_.size() / 3; }
+    /// One for each corner so far, polygon by polygon.
+    void vertex_normals(std::vector<glm::vec3> normals);
+    void vertex_colors(std::vector<glm::vec4> colors);
 
-private:
-    void add(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, std::uint8_t edges);
-    std::vector<glm::dvec3> corners_;
-    std::vector<std::uint8_t> edges_;
-    std::vector<std::uint32_t> polygons_;
-    std::uint32_t polygon_count_ = 0;
+    /// Finished, with equal corners joined.
+    [[nodiscard]] Scene build() const;
+    [[nodiscard]] std::size_t size() const { return scene.triangles.size(); }
+
+    Scene scene;  ///< to be changed at will; not finished
 };
 
 /// A scene with a mixture of what hurts: coplanar walls and decals, crossing and touching faces,

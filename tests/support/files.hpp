@@ -1,4 +1,4 @@
-// A folder that lives as long as a test.
+// Files of a test, in a folder that lives as long as it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,9 +6,24 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <string>
+#include <utility>
 
-namespace sightline::test {
+namespace sightline::testing {
+
+/// All bytes of a file; none when it is missing.
+inline std::string read_file(const std::filesystem::path& path) {
+    const std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return std::move(bytes).str();
+}
+
+inline void write_file(const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
 
 class TemporaryFolder {
 public:
@@ -24,8 +39,14 @@ public:
         std::filesystem::remove_all(path_, ignored);
     }
 
+    [[nodiscard]] std::string path() const { return path_.string(); }
     [[nodiscard]] std::string file(const std::string& name) const {
         return (path_ / name).string();
+    }
+    /// Writes a file and returns its path.
+    [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
+        write_file(path_ / name, bytes);
+        return file(name);
     }
     /// How many entries are in it, hidden ones too.
     [[nodiscard]] std::ptrdiff_t count() const {
@@ -36,15 +57,4 @@ private:
     std::filesystem::path path_;
 };
 
-inline std::string read_bytes(const std::string& path) {
-    std::ifstream in(path, std::ios::binary | std::ios::ate);
-    std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
-    in.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    return bytes;
-}
-
-inline void write_bytes(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
-
-}  // namespace sightline::test
+}  // namespace sightline::testing
