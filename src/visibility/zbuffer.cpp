@@ -11,13 +11,17 @@
 //
 // Two stages, both on all cores. Geometry: chunks of consecutive triangles are gathered a vector at
 // a time; what covers no sample is dropped; triangles of at most 3 x 3 samples are drawn to points
-// at once; the rest goes, by number, into the bins of its tiles. Raster: each tile is owned by one
-// task, which takes its points and triangles, near chunks first, into depth and ids that stay in
-// the core's cache, and writes finished rows once. Under an observer triangles are drawn one by
-// one.
+// at once; the rest goes, by number, into the bins of its tiles, those that show their back apart.
+// Raster: each tile is owned by one worker, which takes its points and triangles, near chunks and
+// front sides first, into depth and ids that stay in the core's cache; while it draws, it writes
+// the tile before, and tiles that nothing fell into, past the caches. Under an observer triangles
+// are drawn one by one.
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -36,8 +40,9 @@ using namespace zbuffer;
 
 constexpr float kNotShared = std::numeric_limits<float>::quiet_NaN();
 
+// Parts 0 .. tiles - 1 are the tiles' front sides, the rest their back sides.
 void sort_triangles(const Selected& selected, const GridUnits& grid, Bins<std::uint32_t>& bins) {
-    bins.sort(grid.tile_count(), [&](const auto& visit) {
+    bins.sort(2 * grid.tile_count(), [&](const auto& visit) {
         for (std::size_t i = 0; i < selected.count; ++i) {
             if (selected.more[i] == 0) {  // most lie in one tile
                 visit(selected.tile[i], selected.triangle[i]);
@@ -62,7 +67,12 @@ void sort_points(const Points& points, const GridUnits& grid, Bins<Point>& bins)
 class ZBuffer {
 public:
     ZBuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out)
-        : screen_(screen), options_(options), out_(out), grid_(out.grid, screen.subpixel_bits()) {}
+        : screen_(screen),
+          options_(options),
+          out_(out),
+          grid_(out.grid, screen.subpixel_bits()),
+          counts_(grid_.tile_count()),
+          is_hit_(grid_.tile_count()) {}
 
     void run() {
         make_chunks();
@@ -72,9 +82,11 @@ public:
         point_bins_.resize(chunks_.size());
         for_each_index(static_cast<std::uint32_t>(chunks_.size()), options_,
                        [&](std::uint32_t c) { take_chunk(c); });
-        const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
-        counts_.resize(tiles);
-        for_each_index(tiles, options_, [&](std::uint32_t t) { draw_tile(t); });
+        share_tiles();
+        const int workers =
+            options_.threads > 0 ? options_.threads : tbb::this_task_arena::max_concurrency();
+        for_each_index(static_cast<std::uint32_t>(workers), options_,
+                       [&](std::uint32_t) { draw_tiles(); });
         report();
     }
 
@@ -137,47 +149,93 @@ private:
         draw_tiny(input(), selected, points);
         sort_triangles(selected, grid_, triangle_bins_[c]);
         sort_points(points, grid_, point_bins_[c]);
+        mark_hit_tiles(triangle_bins_[c], point_bins_[c]);
     }
 
-    void place_tile(std::uint32_t index, Tile& tile) const {
+    void mark_hit_tiles(const Bins<std::uint32_t>& triangles, const Bins<Point>& points) {
+        const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
+        for (std::uint32_t t = 0; t < tiles; ++t)
+            if (!triangles.of(t).empty() || !triangles.of(t + tiles).empty() ||
+                !points.of(t).empty())
+                is_hit_[t].store(true, std::memory_order_relaxed);
+    }
+
+    [[nodiscard]] Area area_of(std::uint32_t index) const {
         constexpr auto kSize = static_cast<std::int32_t>(kTileSize);
-        tile.column = static_cast<std::int32_t>(index) % grid_.tiles_x * kSize;
-        tile.row = static_cast<std::int32_t>(index) / grid_.tiles_x * kSize;
-        tile.width = std::min(kSize, grid_.columns - tile.column);
-        tile.height = std::min(kSize, grid_.rows - tile.row);
+        Area area;
+        area.column = static_cast<std::int32_t>(index) % grid_.tiles_x * kSize;
+        area.row = static_cast<std::int32_t>(index) / grid_.tiles_x * kSize;
+        area.width = std::min(kSize, grid_.columns - area.column);
+        area.height = std::min(kSize, grid_.rows - area.row);
+        return area;
+    }
+
+    void place_tile(const Area& area, Tile& tile) const {
+        tile.column = area.column;
+        tile.row = area.row;
+        tile.width = area.width;
+        tile.height = area.height;
+    }
+
+    void tell_entered(const Area& area) const {
         if (options_.observer != nullptr)
             options_.observer->step({StepKind::tile_entered, kNone, kNone,
-                                     static_cast<std::uint32_t>(tile.column),
-                                     static_cast<std::uint32_t>(tile.row),
-                                     static_cast<std::uint32_t>(tile.column + tile.width),
-                                     static_cast<std::uint32_t>(tile.row + tile.height)});
+                                     static_cast<std::uint32_t>(area.column),
+                                     static_cast<std::uint32_t>(area.row),
+                                     static_cast<std::uint32_t>(area.column + area.width),
+                                     static_cast<std::uint32_t>(area.row + area.height)});
     }
 
-    [[nodiscard]] bool is_empty(std::uint32_t index) const {
-        const auto holds = [index](const auto& bins) { return !bins.of(index).empty(); };
-        return std::none_of(triangle_bins_.begin(), triangle_bins_.end(), holds) &&
-               std::none_of(point_bins_.begin(), point_bins_.end(), holds);
+    // Tiles that something fell into are drawn; the others can be written at any time. A watcher
+    // sees them all, in order.
+    void share_tiles() {
+        const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
+        for (std::uint32_t t = 0; t < tiles; ++t)
+            if (options_.observer != nullptr || is_hit_[t].load(std::memory_order_relaxed))
+                drawn_.push_back(t);
+            else
+                empty_.areas.push_back(area_of(t));
     }
 
-    void draw_tile(std::uint32_t index) {
-        thread_local const auto tile = std::make_unique<Tile>();
-        place_tile(index, *tile);
-        if (is_empty(index)) {
-            write_empty_tile(*tile, grid_, out_.ids.data(), out_.depth.data());
-            return;
+    // One worker's share of the raster stage. While a tile is drawn, the one before it is written.
+    void draw_tiles() {
+        thread_local const auto tiles = std::make_unique<Tile[]>(2);
+        TileWriter writer{out_.ids.data(), out_.depth.data(), grid_.columns, empty_, {}, {}};
+        bool odd = false;
+        for (;;) {
+            const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
+            if (k >= drawn_.size()) break;
+            Tile& tile = tiles[odd ? 1 : 0];
+            odd = !odd;
+            draw_tile(drawn_[k], tile, writer);
+            write_drawn_tile(writer);
+            writer.drawn = PendingRows(&tile, tile.area(), grid_.columns);
         }
-        clear_tile(*tile);
+        write_rest(writer);
+    }
+
+    void draw_tile(std::uint32_t index, Tile& tile, TileWriter& writer) {
+        const Area area = area_of(index);
+        tell_entered(area);
+        place_tile(area, tile);
+        clear_tile(tile);
+        TileCounts counts;  // here, for neighbours in counts_ share a cache line among threads
         const RasterInput raster = input();
         // One list, so that vectors are full across the chunks.
         thread_local std::vector<std::uint32_t> triangles;
         triangles.clear();
-        for (const std::uint32_t c : front_to_back_) {
-            draw_points(raster, point_bins_[c].of(index), *tile, counts_[index]);
-            const std::span<const std::uint32_t> bin = triangle_bins_[c].of(index);
+        const auto append = [&](std::uint32_t chunk, std::uint32_t part) {
+            const std::span<const std::uint32_t> bin = triangle_bins_[chunk].of(part);
             triangles.insert(triangles.end(), bin.begin(), bin.end());
+        };
+        for (const std::uint32_t c : front_to_back_) {
+            draw_points(raster, point_bins_[c].of(index), tile, counts);
+            append(c, index);
         }
-        draw_triangles(raster, triangles, *tile, counts_[index]);
-        write_tile(*tile, grid_, out_.ids.data(), out_.depth.data());
+        for (const std::uint32_t c : front_to_back_)
+            append(c, index + static_cast<std::uint32_t>(grid_.tile_count()));
+        draw_triangles(raster, triangles, tile, counts, writer);
+        counts_[index] = counts;
     }
 
     void report() {
@@ -205,6 +263,10 @@ private:
     std::vector<Bins<std::uint32_t>> triangle_bins_;
     std::vector<Bins<Point>> point_bins_;
     std::vector<TileCounts> counts_;
+    std::vector<std::atomic<bool>> is_hit_;  ///< tiles that something fell into
+    std::vector<std::uint32_t> drawn_;
+    std::atomic<std::size_t> next_{0};
+    EmptyTiles empty_;
 };
 
 }  // namespace

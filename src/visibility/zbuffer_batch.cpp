@@ -6,8 +6,9 @@
 // edge functions taken at the corner of each box (all corners lie within 2^14 units of each other,
 // so 32 bits hold them exactly), planes in double precision (whose integers are exact below 2^53,
 // so these are the quotients of depth_gradient()), and what is empty or hidden is dropped.
-// Triangles whose box is one sample are then only compared; the others are walked row by row. What
-// does not fit (large, steep, pieces of clipped triangles) goes to draw_large().
+// Triangles whose box is one sample are then only compared; the others are walked cell by cell.
+// What does not fit (large, steep, pieces of clipped triangles) goes to draw_large(). Between
+// triangles a little of the tiles drawn before is written to the picture.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -18,14 +19,17 @@
 #define HWY_TARGET_INCLUDE "visibility/zbuffer_batch.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target comes first.
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "visibility/zbuffer_lanes-inl.hpp"
+#include "visibility/zbuffer_write-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::zbuffer::HWY_NAMESPACE {
 namespace {
+
+/// Half-rows that are written to the picture after a vector of triangles, besides one a triangle.
+constexpr int kHalfRowsAVector = 4;
 
 /// Triangles between two updates of the hierarchical depth.
 constexpr std::uint32_t kRefreshAfter = 48;
@@ -64,6 +68,7 @@ HWY_INLINE Outcome judge_depth(const Tile& tile, const Lanes& t, int step_bits, 
 // What the walk over a box needs, a triangle a lane.
 struct Stored {
     HWY_ALIGN std::int32_t edges[9][kLanes];
+    HWY_ALIGN std::int32_t right[3][kLanes], below[3][kLanes];  // increments a cell
     HWY_ALIGN std::int32_t number[kLanes], column0[kLanes], row0[kLanes], columns[kLanes],
         rows[kLanes], dx0[kLanes], dy0[kLanes];
     HWY_ALIGN float gx[kLanes], gy[kLanes], z0[kLanes];
@@ -74,6 +79,8 @@ HWY_INLINE void store(const Lanes& t, Stored& s) {
         hn::Store(t.edges.at[k], kI, s.edges[3 * k]);
         hn::Store(t.edges.per_column[k], kI, s.edges[3 * k + 1]);
         hn::Store(t.edges.per_row[k], kI, s.edges[3 * k + 2]);
+        hn::Store(hn::ShiftLeft<Tile::kCellBits>(t.edges.per_column[k]), kI, s.right[k]);
+        hn::Store(hn::ShiftLeft<Tile::kCellBits>(t.edges.per_row[k]), kI, s.below[k]);
     }
     hn::Store(t.number, kI, s.number);
     hn::Store(t.column0, kI, s.column0);
@@ -89,8 +96,8 @@ HWY_INLINE void store(const Lanes& t, Stored& s) {
 
 class Batch {
 public:
-    Batch(const RasterInput& input, Tile& tile, TileCounts& counts)
-        : input_(input), grid_(input.grid), tile_(tile), counts_(counts) {}
+    Batch(const RasterInput& input, Tile& tile, TileCounts& counts, TileWriter& writer)
+        : input_(input), grid_(input.grid), tile_(tile), counts_(counts), writer_(writer) {}
 
     void draw(std::span<const std::uint32_t> triangles) {
         for_each_vector(
@@ -98,6 +105,7 @@ public:
             [&](std::size_t i) HWY_ATTR { return fetch_from(triangles, i); },
             [&](const Fetched& fetched, const CornerLanes& points) HWY_ATTR {
                 draw_vector(fetched, points);
+                write_some(writer_, kHalfRowsAVector);
                 if (tile_.drawn >= kRefreshAfter) refresh_depth();
             });
     }
@@ -117,10 +125,27 @@ private:
         draw_each(fetched.number, hn::AndNot(fetched.whole, fetched.wanted));
         Lanes t;
         M large;
-        const M kept = set_up_lanes(input_, tile_.area(), fetched, points, t, large);
+        const auto look = [&](const CornerLanes& p, const Lanes& boxes, M boxed)
+                              HWY_ATTR { return dismiss_hidden(p, boxes, boxed); };
+        const M kept = set_up_lanes(input_, tile_.area(), fetched, points, look, t, large);
         draw_each(t.number, large);
         if (hn::AllFalse(kI, kept)) return;
         finish_vector(t, judge_depth(tile_, t, grid_.step_bits, kept));
+    }
+
+    // Hidden triangles, told by their nearest corner before planes are set up: no sample's true
+    // depth is less. The conversion of z is off by at most 32, a stored depth by
+    // kStoredDepthError, the difference by 64. Sheets' planes do not pass through the corners.
+    static_assert(kUncertain - 64 - 32 > kStoredDepthError);
+    HWY_INLINE M dismiss_hidden(const CornerLanes& p, const Lanes& t, M kept) {
+        if (!tile_.knows_depth) return kept;
+        const VF nearest = hn::Sub(hn::ConvertTo(kF, least(p.z)), hn::Set(kF, kUncertain));
+        const M behind = hn::RebindMask(kI, hn::Gt(nearest, depth_behind(tile_, t, kept)));
+        const M hidden = hn::AndNot(sheet_lanes(input_, t.number), hn::And(kept, behind));
+        const auto count = static_cast<std::uint64_t>(std::popcount(bits_of(hidden)));
+        counts_.triangles += count;
+        counts_.hidden += count;
+        return hn::AndNot(hidden, kept);
     }
 
     void finish_vector(const Lanes& t, const Outcome& outcome) {
@@ -137,8 +162,10 @@ private:
         const std::uint32_t points = bits_of(hn::And(outcome.regular, point));
         for (std::uint32_t rest = points; rest != 0; rest &= rest - 1)
             draw_point(static_cast<std::size_t>(std::countr_zero(rest)));
-        for (std::uint32_t rest = regular & ~points; rest != 0; rest &= rest - 1)
+        for (std::uint32_t rest = regular & ~points; rest != 0; rest &= rest - 1) {
             draw_box(static_cast<std::size_t>(std::countr_zero(rest)));
+            write_some(writer_, 1);
+        }
     }
 
     void draw_each(VI number, M chosen) {
@@ -172,95 +199,120 @@ private:
         settle(lane);
     }
 
-    // All rows, in aligned vectors of columns: the next triangle will most likely want the same
-    // ones, and a load that a masked or shifted store overlaps has to wait for it.
+    // All cells that the box meets: mostly no more than two by two, which are drawn to without a
+    // branch. Samples of a cell outside of the box are outside of the triangle, but for some beyond
+    // the picture's or the tile's border, which nobody reads.
     HWY_INLINE void draw_box(std::size_t lane) {
-        const auto lanes = static_cast<std::int32_t>(hn::Lanes(kI));
-        const std::int32_t column0 = stored_.column0[lane];
-        const std::int32_t last = column0 + stored_.columns[lane];
         bool doubtful = false;
-        for (std::int32_t column = column0 & -lanes; column <= last; column += lanes)
-            doubtful |= draw_columns(lane, column);
+        for (std::size_t part = 0; part < Tile::kCell; part += hn::Lanes(kI))
+            doubtful |= draw_part(lane, part);
         if (HWY_UNLIKELY(doubtful)) settle(lane);
     }
 
-    // Columns `column`..; those outside of the box are outside of the triangle, but for some beyond
-    // the picture's border, which nobody reads. Returns whether a sample was too close to call.
-    HWY_INLINE bool draw_columns(std::size_t lane, std::int32_t column) {
-        const std::int32_t step = 1 << grid_.step_bits;
-        const VI index = hn::Add(hn::Iota(kI, 0), set(column - stored_.column0[lane]));
-        const auto along = [&](int k) {
-            return hn::Add(set(stored_.edges[3 * k][lane]),
-                           hn::Mul(index, set(stored_.edges[3 * k + 1][lane])));
-        };
-        VI e0 = along(0), e1 = along(1), e2 = along(2);
-        const VI down0 = set(stored_.edges[2][lane]), down1 = set(stored_.edges[5][lane]),
-                 down2 = set(stored_.edges[8][lane]);
-        const VI dx = hn::Add(set(stored_.dx0[lane]), hn::Mul(index, set(step)));
-        const VF tx = hn::Mul(hn::Set(kF, stored_.gx[lane]), hn::ConvertTo(kF, dx));
-        const VF z0 = hn::Set(kF, stored_.z0[lane]), margin = hn::Set(kF, kUncertain);
-        const auto id = hn::Set(kU, static_cast<std::uint32_t>(stored_.number[lane]));
-        const float gy = stored_.gy[lane];
-        std::int32_t dy = stored_.dy0[lane];
-        std::size_t at = Tile::index(column, stored_.row0[lane]);
-        const std::size_t end =
-            at + Tile::kStride * static_cast<std::size_t>(stored_.rows[lane] + 1);
-        auto doubtful = hn::Lt(margin, margin);
-        for (; at != end; at += Tile::kStride, dy += step) {
-            const auto covered = hn::RebindMask(kF, hn::Gt(hn::Or(e0, hn::Or(e1, e2)), set(-1)));
-            const VF ty = hn::Set(kF, gy * static_cast<float>(dy));
-            const VF z = stored_depth_of(z0, tx, ty);
-            const VF old = hn::Load(kF, tile_.depth + at);
-            const auto nearer = hn::And(covered, hn::Lt(z, hn::Sub(old, margin)));
-            const auto not_farther = hn::And(covered, hn::Le(z, hn::Add(old, margin)));
-            doubtful = hn::Or(doubtful, hn::AndNot(nearer, not_farther));
-            hn::Store(hn::IfThenElse(nearer, z, old), kF, tile_.depth + at);
-            const auto owner = hn::Load(kU, tile_.ids + at);
-            hn::Store(hn::IfThenElse(hn::RebindMask(kU, nearer), id, owner), kU, tile_.ids + at);
-            e0 = hn::Add(e0, down0);
-            e1 = hn::Add(e1, down1);
-            e2 = hn::Add(e2, down2);
+    // A triangle in a vector's part of a cell.
+    struct Walk {
+        VI e[3];
+        VI dx, dy;
+        VF gx, gy, z0;
+        hn::Vec<Uints> id;
+        hn::Mask<Floats> doubtful;
+    };
+
+    // The samples from `part` on in each cell. Returns whether one was too close to call.
+    HWY_INLINE bool draw_part(std::size_t lane, std::size_t part) {
+        constexpr std::int32_t kIn = Tile::kCellSide - 1;
+        const std::int32_t column0 = stored_.column0[lane], row0 = stored_.row0[lane];
+        const VI in_cell = hn::Iota(kI, static_cast<std::int32_t>(part));
+        const VI i = hn::Sub(hn::And(in_cell, set(kIn)), set(column0 & kIn));
+        const VI j = hn::Sub(hn::ShiftRight<Tile::kCellBits>(in_cell), set(row0 & kIn));
+        Walk w;
+        for (int k = 0; k < 3; ++k)
+            w.e[k] = hn::Add(set(stored_.edges[3 * k][lane]),
+                             hn::Add(hn::Mul(i, set(stored_.edges[3 * k + 1][lane])),
+                                     hn::Mul(j, set(stored_.edges[3 * k + 2][lane]))));
+        w.dx = hn::Add(set(stored_.dx0[lane]), hn::ShiftLeftSame(i, grid_.step_bits));
+        w.dy = hn::Add(set(stored_.dy0[lane]), hn::ShiftLeftSame(j, grid_.step_bits));
+        w.gx = hn::Set(kF, stored_.gx[lane]);
+        w.gy = hn::Set(kF, stored_.gy[lane]);
+        w.z0 = hn::Set(kF, stored_.z0[lane]);
+        w.id = hn::Set(kU, static_cast<std::uint32_t>(stored_.number[lane]));
+        w.doubtful = hn::Lt(w.gx, w.gx);
+        const std::size_t at = Tile::index(column0 & ~kIn, row0 & ~kIn) + part;
+        const std::int32_t right = (column0 & kIn) + stored_.columns[lane];
+        const std::int32_t below = (row0 & kIn) + stored_.rows[lane];
+        if (HWY_LIKELY((right | below) < 2 * Tile::kCellSide))
+            draw_cells(lane, at, 1, 1, w);
+        else
+            draw_cells(lane, at, right >> Tile::kCellBits, below >> Tile::kCellBits, w);
+        return !hn::AllFalse(kF, w.doubtful);
+    }
+
+    // The first cell and `right` by `below` further ones.
+    HWY_INLINE void draw_cells(std::size_t lane, std::size_t at, std::int32_t right,
+                               std::int32_t below, Walk& w) {
+        const VI step = set(Tile::kCellSide << grid_.step_bits);
+        for (std::int32_t r = 0;; ++r, at += Tile::kCellRow) {
+            VI e[3] = {w.e[0], w.e[1], w.e[2]};
+            VI dx = w.dx;
+            const VF ty = hn::Mul(w.gy, hn::ConvertTo(kF, w.dy));
+            for (std::int32_t c = 0;; ++c) {
+                const VF tx = hn::Mul(w.gx, hn::ConvertTo(kF, dx));
+                offer(e, stored_depth_of(w.z0, tx, ty),
+                      at + static_cast<std::size_t>(c) * Tile::kCell, w);
+                if (c == right) break;
+                for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], set(stored_.right[k][lane]));
+                dx = hn::Add(dx, step);
+            }
+            if (r == below) break;
+            for (int k = 0; k < 3; ++k) w.e[k] = hn::Add(w.e[k], set(stored_.below[k][lane]));
+            w.dy = hn::Add(w.dy, step);
         }
-        return !hn::AllFalse(kF, doubtful);
+    }
+
+    // Whole vectors are stored, not masked ones: the next triangle most likely wants the same
+    // samples, and a load that a masked or shifted store overlaps has to wait for it.
+    HWY_INLINE void offer(const VI e[3], VF z, std::size_t at, Walk& w) {
+        const VF margin = hn::Set(kF, kUncertain);
+        const auto covered = hn::RebindMask(kF, hn::Gt(hn::Or(e[0], hn::Or(e[1], e[2])), set(-1)));
+        const VF old = hn::Load(kF, tile_.depth + at);
+        const auto nearer = hn::And(covered, hn::Lt(z, hn::Sub(old, margin)));
+        const auto not_farther = hn::And(covered, hn::Le(z, hn::Add(old, margin)));
+        w.doubtful = hn::Or(w.doubtful, hn::AndNot(nearer, not_farther));
+        hn::Store(hn::IfThenElse(nearer, z, old), kF, tile_.depth + at);
+        const auto owner = hn::Load(kU, tile_.ids + at);
+        hn::Store(hn::IfThenElse(hn::RebindMask(kU, nearer), w.id, owner), kU, tile_.ids + at);
     }
 
     // Brings block_max and tile_max up to date.
     void refresh_depth() {
-        const auto lanes = static_cast<std::uint32_t>(hn::Lanes(kI));
         tile_.drawn = 0;
         tile_.knows_depth = true;
-        VF all = hn::Zero(kF);
-        HWY_ALIGN float columns[kTileSize];
-        constexpr std::uint32_t kSide = 1u << Tile::kBlockBits;
-        for (std::uint32_t r = 0; r < Tile::kBlocks; ++r) {
-            for (std::uint32_t c = 0; c < kTileSize; c += lanes) {
-                const float* at = tile_.depth + std::size_t{r} * kSide * Tile::kStride + c;
-                VF most = hn::LoadU(kF, at);
-                for (std::uint32_t k = 1; k < kSide; ++k)
-                    most = hn::Max(most, hn::LoadU(kF, at + std::size_t{k} * Tile::kStride));
-                hn::Store(most, kF, columns + c);
-                all = hn::Max(all, most);
-            }
-            for (std::uint32_t b = 0; b < Tile::kBlocks; ++b) {
-                const float* c = columns + b * kSide;
-                const float left = std::max(std::max(c[0], c[1]), std::max(c[2], c[3]));
-                const float right = std::max(std::max(c[4], c[5]), std::max(c[6], c[7]));
-                tile_.block_max[r * Tile::kBlocks + b] = std::max(left, right);
-            }
+        float all = 0;
+        for (std::uint32_t b = 0; b < Tile::kBlocks * Tile::kBlocks; ++b) {
+            const auto column = static_cast<std::int32_t>(b % Tile::kBlocks << Tile::kBlockBits);
+            const auto row = static_cast<std::int32_t>(b / Tile::kBlocks << Tile::kBlockBits);
+            const float* at = tile_.depth + Tile::index(column, row);
+            VF most = hn::Zero(kF);
+            for (std::size_t k = 0; k < 2 * Tile::kCell; k += hn::Lanes(kF))
+                most = hn::Max(
+                    most, hn::Max(hn::Load(kF, at + k), hn::Load(kF, at + Tile::kCellRow + k)));
+            tile_.block_max[b] = hn::GetLane(hn::MaxOfLanes(kF, most));
+            all = std::max(all, tile_.block_max[b]);
         }
-        tile_.tile_max = hn::GetLane(hn::MaxOfLanes(kF, all));
+        tile_.tile_max = all;
     }
 
     const RasterInput& input_;
     const GridUnits& grid_;
     Tile& tile_;
     TileCounts& counts_;
+    TileWriter& writer_;
     Stored stored_;
 };
 
 void draw_batches(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                  TileCounts& counts) {
-    Batch(input, tile, counts).draw(triangles);
+                  TileCounts& counts, TileWriter& writer) {
+    Batch(input, tile, counts, writer).draw(triangles);
 }
 
 void clear(Tile& tile) {
@@ -277,53 +329,6 @@ void clear(Tile& tile) {
     tile.drawn = 0;
 }
 
-// Copies a row. The picture is not read again soon: full lines go past the caches.
-template <class D>
-HWY_INLINE void write_row(D d, const hn::TFromD<D>* from, std::size_t n, hn::TFromD<D>* to) {
-    const std::size_t lanes = hn::Lanes(d);
-    std::size_t i = 0;
-    if (reinterpret_cast<std::uintptr_t>(to) % (lanes * sizeof(hn::TFromD<D>)) == 0)
-        for (; i + lanes <= n; i += lanes) hn::Stream(hn::Load(d, from + i), d, to + i);
-    std::copy(from + i, from + n, to + i);
-}
-
-// The same with one value.
-template <class D>
-HWY_INLINE void fill_row(D d, hn::TFromD<D> value, std::size_t n, hn::TFromD<D>* to) {
-    const std::size_t lanes = hn::Lanes(d);
-    const auto values = hn::Set(d, value);
-    std::size_t i = 0;
-    if (reinterpret_cast<std::uintptr_t>(to) % (lanes * sizeof(hn::TFromD<D>)) == 0)
-        for (; i + lanes <= n; i += lanes) hn::Stream(values, d, to + i);
-    std::fill(to + i, to + n, value);
-}
-
-// put(row, at): a row of the tile, and where it begins in the picture.
-template <class Put>
-HWY_INLINE void for_each_row(const Tile& tile, const GridUnits& grid, const Put& put) {
-    for (std::int32_t row = 0; row < tile.height; ++row)
-        put(row, static_cast<std::size_t>(tile.row + row) * static_cast<std::size_t>(grid.columns) +
-                     static_cast<std::size_t>(tile.column));
-    hwy::FlushStream();
-}
-
-void write(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
-    const auto width = static_cast<std::size_t>(tile.width);
-    for_each_row(tile, grid, [&](std::int32_t row, std::size_t at) HWY_ATTR {
-        const std::size_t from = Tile::index(0, row);
-        write_row(kU, tile.ids + from, width, ids + at);
-        write_row(kF, tile.depth + from, width, depth + at);
-    });
-}
-
-void write_empty(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
-    const auto width = static_cast<std::size_t>(tile.width);
-    for_each_row(tile, grid, [&](std::int32_t, std::size_t at) HWY_ATTR {
-        fill_row(kU, kNone, width, ids + at);
-        fill_row(kF, std::numeric_limits<float>::infinity(), width, depth + at);
-    });
-}
-
 }  // namespace
 }  // namespace sightline::zbuffer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -333,28 +338,24 @@ namespace sightline::zbuffer {
 
 HWY_EXPORT(draw_batches);
 HWY_EXPORT(clear);
-HWY_EXPORT(write);
-HWY_EXPORT(write_empty);
+HWY_EXPORT(write_all);
+HWY_EXPORT(write_drawn);
 
 void clear_tile(Tile& tile) { HWY_DYNAMIC_DISPATCH(clear)(tile); }
 
 void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                    TileCounts& counts) {
+                    TileCounts& counts, TileWriter& writer) {
     if (input.observer == nullptr) {
-        HWY_DYNAMIC_DISPATCH(draw_batches)(input, triangles, tile, counts);
+        HWY_DYNAMIC_DISPATCH(draw_batches)(input, triangles, tile, counts, writer);
         return;
     }
     // A watcher wants to see the steps one by one.
     for (const std::uint32_t k : triangles) draw_large(input, k, tile, counts);
 }
 
-void write_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
-    HWY_DYNAMIC_DISPATCH(write)(tile, grid, ids, depth);
-}
+void write_rest(TileWriter& writer) { HWY_DYNAMIC_DISPATCH(write_all)(writer); }
 
-void write_empty_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth) {
-    HWY_DYNAMIC_DISPATCH(write_empty)(tile, grid, ids, depth);
-}
+void write_drawn_tile(TileWriter& writer) { HWY_DYNAMIC_DISPATCH(write_drawn)(writer); }
 
 }  // namespace sightline::zbuffer
 #endif  // HWY_ONCE

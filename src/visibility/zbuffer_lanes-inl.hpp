@@ -227,13 +227,23 @@ HWY_INLINE void set_own_planes(const CornerLanes& p, Lanes& t) {
 #endif
 }
 
+HWY_INLINE VI sheets_of(const RasterInput& input, VI number) {
+    const auto* of_triangle =
+        reinterpret_cast<const std::int32_t*>(input.screen.scene().sheets.of_triangle.data());
+    return hn::GatherIndex(kI, of_triangle, number);
+}
+
+// Triangles that belong to a sheet.
+HWY_INLINE M sheet_lanes(const RasterInput& input, VI number) {
+    if (input.shared.empty()) return hn::Ne(number, number);
+    return hn::Ne(sheets_of(input, number), set(-1));
+}
+
 // Puts the shared plane in place of the own one where a triangle belongs to a sheet.
 HWY_INLINE void set_shared_planes(const RasterInput& input, VI sx, VI sy, Lanes& t) {
     if (input.shared.empty()) return;
     static_assert(sizeof(SharedGradient) == 5 * sizeof(float));
-    const auto* of_triangle =
-        reinterpret_cast<const std::int32_t*>(input.screen.scene().sheets.of_triangle.data());
-    const VI sheet = hn::GatherIndex(kI, of_triangle, t.number);
+    const VI sheet = sheets_of(input, t.number);
     const M in_sheet = hn::Ne(sheet, set(-1));
     if (hn::AllFalse(kI, in_sheet)) return;
     const VI slot = hn::Mul(hn::IfThenElseZero(in_sheet, sheet), set(5));
@@ -277,8 +287,10 @@ HWY_INLINE VF stored_depth_of(VF z0, VF tx, VF ty) {
 
 // All of the set-up but the judgement of depth: boxes in `area`, edges and planes of the small
 // triangles. Returns the lanes that may cover a sample; `large` gets those that are not small.
+// look(p, t, kept) is asked, as soon as the boxes are known, which of the lanes are still wanted.
+template <class Look>
 HWY_INLINE M set_up_lanes(const RasterInput& input, const Area& area, const Fetched& fetched,
-                          CornerLanes p, Lanes& t, M& large) {
+                          CornerLanes p, const Look& look, Lanes& t, M& large) {
     const GridUnits& grid = input.grid;
     t.number = hn::IfThenElseZero(fetched.whole, fetched.number);
     t.gx = t.gy = t.z0 = hn::Zero(kF);
@@ -288,6 +300,8 @@ HWY_INLINE M set_up_lanes(const RasterInput& input, const Area& area, const Fetc
     large = hn::AndNot(small, in_area);
     const VI doubled = doubled_area(p);
     M kept = hn::And(hn::And(in_area, small), hn::Ne(doubled, set(0)));
+    if (hn::AllFalse(kI, kept)) return kept;
+    kept = look(p, t, kept);
     if (hn::AllFalse(kI, kept)) return kept;
     orient(p, hn::Lt(doubled, set(0)));
     const VI step = set(1 << grid.step_bits);

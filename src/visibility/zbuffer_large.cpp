@@ -11,7 +11,7 @@
 // most 64 samples, so an edge that crosses the box stays below 2^30; one that does not is settled
 // at once.
 //
-// The box is walked in blocks of a vector by eight rows. A block that an edge excludes, or in which
+// The box is walked in blocks of 16 by 8 samples. A block that an edge excludes, or in which
 // hierarchical depth shows that all is hidden, is left out.
 #include <algorithm>
 #include <bit>
@@ -161,14 +161,19 @@ using VF = hn::Vec<Floats>;
 constexpr Ints kI;
 constexpr Floats kF;
 constexpr Uints kU;
-constexpr std::int32_t kBlockRows = 1 << Tile::kBlockBits;
+constexpr std::int32_t kBlockRows = 1 << Tile::kBlockBits, kBlockColumns = 2 * kBlockRows;
 
-// Newcomers at `column`.. of a row: nearer ones take their samples, doubtful ones are compared.
-HWY_INLINE void offer_vector(Painter& painter, VF z, hn::Mask<Floats> covered, std::int32_t column,
-                             std::int32_t row) {
+// Samples of a cell: those from `first` on, a vector of them.
+struct Part {
+    std::int32_t column, row;  // of the cell
+    std::size_t first, at;     // in the cell, in the tile
+};
+
+// Newcomers in a part of a cell: nearer ones take their samples, doubtful ones are compared.
+HWY_INLINE void offer_vector(Painter& painter, VF z, hn::Mask<Floats> covered, const Part& part) {
     Tile& tile = painter.tile;
-    const std::size_t at = Tile::index(column, row);
-    const VF old = hn::LoadU(kF, tile.depth + at);
+    const std::size_t at = part.at;
+    const VF old = hn::Load(kF, tile.depth + at);
     const VF margin = hn::Set(kF, kUncertain);
     const auto nearer = hn::And(covered, hn::Lt(z, hn::Sub(old, margin)));
     const auto doubtful = hn::AndNot(nearer, hn::And(covered, hn::Le(z, hn::Add(old, margin))));
@@ -180,7 +185,9 @@ HWY_INLINE void offer_vector(Painter& painter, VF z, hn::Mask<Floats> covered, s
         hn::StoreMaskBits(kF, watched ? hn::Or(nearer, doubtful) : doubtful, bits);
         for (unsigned rest = bits[0] | unsigned{bits[1]} << 8; rest != 0; rest &= rest - 1) {
             const int lane = std::countr_zero(rest);
-            painter.offer(depths[lane], column + lane, row);
+            const std::int32_t in_cell = static_cast<std::int32_t>(part.first) + lane;
+            painter.offer(depths[lane], part.column + (in_cell & (Tile::kCellSide - 1)),
+                          part.row + (in_cell >> Tile::kCellBits));
         }
         if (watched) return;
     }
@@ -188,7 +195,7 @@ HWY_INLINE void offer_vector(Painter& painter, VF z, hn::Mask<Floats> covered, s
     hn::BlendedStore(hn::Set(kU, painter.setup.id), hn::RebindMask(kU, nearer), kU, tile.ids + at);
 }
 
-// A part of the box at most a vector wide and kBlockRows high.
+// A part of the box within kBlockColumns by kBlockRows samples.
 struct Block {
     std::int32_t column0, column1, row0, row1;
 };
@@ -227,44 +234,88 @@ bool is_hidden(const Painter& painter, const Block& b) {
     return true;
 }
 
-void draw_block(Painter& painter, const Block& b) {
+// Where columns, or rows, of samples stand in each cell of a block.
+template <int kCells>
+struct Positions {
+    VI outside[kCells];  // negative outside of the block
+    VF term[kCells];     // of the depth
+
+    // at: of the samples; gradient: of the depth; from: what it begins at, for sample 0.
+    HWY_INLINE void set(VI at, std::int32_t first, std::int32_t last, float gradient,
+                        std::int32_t from, int step_bits) {
+        for (int n = 0; n < kCells; ++n) {
+            outside[n] = hn::Or(hn::Sub(at, hn::Set(kI, first)), hn::Sub(hn::Set(kI, last), at));
+            const VI d = hn::Add(hn::Set(kI, from), hn::ShiftLeftSame(at, step_bits));
+            term[n] = hn::Mul(hn::Set(kF, gradient), hn::ConvertTo(kF, d));
+            at = hn::Add(at, hn::Set(kI, Tile::kCellSide));
+        }
+    }
+};
+
+// The samples from `first` on in each cell of a block. Beyond the box an edge that was settled for
+// the box says nothing, so the block's own borders are asked, too.
+void draw_part(Painter& painter, const Block& b, std::size_t first) {
+    constexpr std::int32_t kSide = Tile::kCellSide;
     const Setup& s = painter.setup;
     const GridUnits& grid = painter.input.grid;
-    const std::int32_t step = 1 << grid.step_bits;
-    const VI iota = hn::Iota(kI, 0);
-    VI edge[3];
+    const std::int32_t column0 = b.column0 & -kSide, row0 = b.row0 & -kSide;
+    const VI in_cell = hn::Iota(kI, static_cast<std::int32_t>(first));
+    const VI i = hn::Add(hn::And(in_cell, hn::Set(kI, kSide - 1)), hn::Set(kI, column0));
+    const VI j = hn::Add(hn::ShiftRight<Tile::kCellBits>(in_cell), hn::Set(kI, row0));
+    Positions<kBlockColumns / kSide> x;
+    x.set(i, b.column0, b.column1, s.gradient.gx, grid.position(painter.tile.column) - s.plane.at.x,
+          grid.step_bits);
+    Positions<kBlockRows / kSide> y;
+    y.set(j, b.row0, b.row1, s.gradient.gy, grid.position(painter.tile.row) - s.plane.at.y,
+          grid.step_bits);
+    VI edge[3];  // at the cell
     for (int k = 0; k < 3; ++k) {
         const Edge& e = s.edges[k];
-        const std::int32_t at =
-            e.value + e.per_column * (b.column0 - s.column0) + e.per_row * (b.row0 - s.row0);
-        edge[k] = hn::Add(hn::Set(kI, at), hn::Mul(iota, hn::Set(kI, e.per_column)));
+        edge[k] =
+            hn::Add(hn::Set(kI, e.value),
+                    hn::Add(hn::Mul(hn::Sub(i, hn::Set(kI, s.column0)), hn::Set(kI, e.per_column)),
+                            hn::Mul(hn::Sub(j, hn::Set(kI, s.row0)), hn::Set(kI, e.per_row))));
     }
-    // Beyond the box an edge that was settled for the box says nothing.
-    const auto in_box = hn::Lt(iota, hn::Set(kI, b.column1 - b.column0 + 1));
-    const std::int32_t dx0 = grid.position(painter.tile.column + b.column0) - s.plane.at.x;
-    std::int32_t dy = grid.position(painter.tile.row + b.row0) - s.plane.at.y;
-    const VI dx = hn::Add(hn::Set(kI, dx0), hn::Mul(iota, hn::Set(kI, step)));
-    const VF tx = hn::Mul(hn::Set(kF, s.gradient.gx), hn::ConvertTo(kF, dx));
-    for (std::int32_t row = b.row0; row <= b.row1; ++row, dy += step) {
-        const auto inside = hn::Gt(hn::Or(edge[0], hn::Or(edge[1], edge[2])), hn::Set(kI, -1));
-        const auto covered = hn::RebindMask(kF, hn::And(in_box, inside));
-        if (!hn::AllFalse(kF, covered)) {
-            const VF ty = hn::Set(kF, s.gradient.gy * static_cast<float>(dy));
-            const VF z = hn::Add(hn::Set(kF, s.gradient.z0), hn::Add(tx, ty));
-            offer_vector(painter, hn::Min(hn::Max(z, hn::Zero(kF)), hn::Set(kF, kStoredDepthMax)),
-                         covered, b.column0, row);
+    const VF z0 = hn::Set(kF, s.gradient.z0);
+    VI right[3], below[3];
+    for (int k = 0; k < 3; ++k) {
+        right[k] = hn::Set(kI, kSide * s.edges[k].per_column);
+        below[k] = hn::Set(kI, kSide * s.edges[k].per_row);
+    }
+    std::size_t row_at = Tile::index(column0, row0) + first;
+    for (std::int32_t row = row0, r = 0; row <= b.row1; row += kSide, ++r) {
+        VI e[3] = {edge[0], edge[1], edge[2]};
+        std::size_t at = row_at;
+        for (std::int32_t column = column0, c = 0; column <= b.column1; column += kSide, ++c) {
+            const VI any =
+                hn::Or(hn::Or(e[0], hn::Or(e[1], e[2])), hn::Or(x.outside[c], y.outside[r]));
+            const auto covered = hn::RebindMask(kF, hn::Gt(any, hn::Set(kI, -1)));
+            if (!hn::AllFalse(kF, covered)) {
+                const VF z = hn::Add(z0, hn::Add(x.term[c], y.term[r]));
+                offer_vector(painter,
+                             hn::Min(hn::Max(z, hn::Zero(kF)), hn::Set(kF, kStoredDepthMax)),
+                             covered, {column, row, first, at});
+            }
+            for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], right[k]);
+            at += Tile::kCell;
         }
-        for (int k = 0; k < 3; ++k) edge[k] = hn::Add(edge[k], hn::Set(kI, s.edges[k].per_row));
+        for (int k = 0; k < 3; ++k) edge[k] = hn::Add(edge[k], below[k]);
+        row_at += Tile::kCellRow;
     }
 }
 
+void draw_block(Painter& painter, const Block& b) {
+    for (std::size_t first = 0; first < Tile::kCell; first += hn::Lanes(kI))
+        draw_part(painter, b, first);
+}
+
 void draw_regular(Painter& painter) {
-    const auto lanes = static_cast<std::int32_t>(hn::Lanes(kI));
     const Setup& s = painter.setup;
     bool all_hidden = true;
     for (std::int32_t row = s.row0; row <= s.row1; row = (row | (kBlockRows - 1)) + 1)
-        for (std::int32_t column = s.column0; column <= s.column1; column += lanes) {
-            const Block block{column, std::min(column + lanes - 1, s.column1), row,
+        for (std::int32_t column = s.column0; column <= s.column1;
+             column = (column | (kBlockColumns - 1)) + 1) {
+            const Block block{column, std::min(column | (kBlockColumns - 1), s.column1), row,
                               std::min(row | (kBlockRows - 1), s.row1)};
             if (is_excluded(s, block)) continue;
             if (is_hidden(painter, block)) continue;

@@ -83,6 +83,16 @@ HWY_INLINE Boxes boxes_of(const Triangles& t, const GridUnits& grid, const Shift
     return b;
 }
 
+// Whether a triangle shows its back. A float's rounding may get it wrong; nothing but the order of
+// drawing depends on it.
+HWY_INLINE M shows_back(const Triangles& t) {
+    const hn::Rebind<float, Ints> kF;
+    const auto difference = [&](V a, V b) { return hn::ConvertTo(kF, hn::Sub(a, b)); };
+    const auto ab = hn::Mul(difference(t.x1, t.x0), difference(t.y2, t.y0));
+    const auto ba = hn::Mul(difference(t.y1, t.y0), difference(t.x2, t.x0));
+    return hn::RebindMask(kI, hn::Gt(ab, ba));
+}
+
 HWY_INLINE M drawable_lanes(const std::uint8_t* skip) {
     const hn::Rebind<std::uint8_t, Ints> bytes;
     const V flags = hn::PromoteTo(kI, hn::LoadU(bytes, skip));
@@ -123,7 +133,9 @@ HWY_INLINE void select_vector(const ScreenScene& screen, const GridUnits& grid,
 
     const V tx0 = hn::ShiftRight<kTileBits>(b.column0), tx1 = hn::ShiftRight<kTileBits>(b.column1);
     const V ty0 = hn::ShiftRight<kTileBits>(b.row0), ty1 = hn::ShiftRight<kTileBits>(b.row1);
-    const V tile = hn::Add(hn::Mul(ty0, hn::Set(kI, grid.tiles_x)), tx0);
+    const V behind = hn::IfThenElseZero(shows_back(t),
+                                        hn::Set(kI, static_cast<std::int32_t>(grid.tile_count())));
+    const V tile = hn::Add(hn::Add(hn::Mul(ty0, hn::Set(kI, grid.tiles_x)), tx0), behind);
     const V more = hn::Or(hn::Sub(tx1, tx0), hn::ShiftLeft<16>(hn::Sub(ty1, ty0)));
     store(number, kept, out.triangle.data() + out.count);
     store(tile, kept, out.tile.data() + out.count);

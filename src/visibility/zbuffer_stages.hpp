@@ -1,6 +1,7 @@
 // The SIMD stages of the z-buffer, and what they share with its driver.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,14 +41,15 @@ struct Selected {
     /// The tiny ones: their numbers.
     std::vector<std::uint32_t> tiny;
     std::size_t tiny_count = 0;
-    /// The others: number, first tile (row-major), further tiles (columns + (rows << 16)).
+    /// The others: number, first tile (row-major, and for those that show their back as many tiles
+    /// more as there are), further tiles (columns + (rows << 16)).
     std::vector<std::uint32_t> triangle, tile, more;
     std::size_t count = 0;
 };
 
 /// A sample that a triangle covers, with its stored depth there.
 struct Point {
-    std::uint32_t place;  ///< tile << 12 | row in the tile << 6 | column in the tile
+    std::uint32_t place;  ///< tile << 12 | sample in the tile, cell by cell (Tile)
     float z;
     std::uint32_t id;
 };
@@ -72,15 +74,20 @@ struct Area {
     std::int32_t column = 0, row = 0, width = 0, height = 0;
 };
 
-/// Depth and ids of a tile. A row is longer than the tile is wide, so that a full vector may be
-/// stored from any column.
+/// Depth and ids of a tile, in cells of 4 x 4 samples: a small triangle meets fewer cells than
+/// rows. There is a column and a row of cells more than the tile has, so that two by two cells may
+/// be drawn to from any.
 struct Tile {
-    static constexpr std::uint32_t kStride = kTileSize + 16;
-    static constexpr std::uint32_t kBlockBits = 3;  ///< a block is 8 x 8 samples
+    static constexpr std::int32_t kCellBits = 2, kCellSide = 1 << kCellBits;
+    static constexpr std::size_t kCell = std::size_t{kCellSide} * kCellSide;  ///< samples
+    static constexpr std::uint32_t kLastCell = (kTileSize >> kCellBits) - 1;  ///< of a row
+    static constexpr std::size_t kAcross = kLastCell + 2;                     ///< cells a row
+    static constexpr std::size_t kCellRow = kAcross * kCell;  ///< samples in a row of cells
+    static constexpr std::uint32_t kBlockBits = 3;            ///< a block is 8 x 8 samples
     static constexpr std::uint32_t kBlocks = kTileSize >> kBlockBits;
 
-    alignas(64) float depth[kTileSize * kStride];
-    alignas(64) std::uint32_t ids[kTileSize * kStride];
+    alignas(64) float depth[kAcross * kCellRow];
+    alignas(64) std::uint32_t ids[kAcross * kCellRow];
     /// Hierarchical depth: no stored depth of the block is greater.
     alignas(64) float block_max[kBlocks * kBlocks];
     float tile_max = 0;
@@ -91,8 +98,72 @@ struct Tile {
     std::int32_t width = 0, height = 0;
 
     [[nodiscard]] Area area() const { return {column, row, width, height}; }
+    /// Of a sample: its cell (row, column), then the sample in it (row, column).
     [[nodiscard]] static std::size_t index(std::int32_t column, std::int32_t row) {
-        return static_cast<std::size_t>(row) * kStride + static_cast<std::size_t>(column);
+        constexpr std::uint32_t kIn = kCellSide - 1;
+        const auto c = static_cast<std::uint32_t>(column), r = static_cast<std::uint32_t>(row);
+        return (r >> kCellBits) * kCellRow + (c >> kCellBits) * kCell + (r & kIn) * kCellSide +
+               (c & kIn);
+    }
+    /// Of a point.
+    [[nodiscard]] static std::size_t index(const Point& point) {
+        const std::uint32_t sample = point.place & (kTileSize * kTileSize - 1);
+        constexpr std::uint32_t kRowBits =
+            kTileBits + kCellBits;  // of the samples in a row of cells
+        return sample + (sample >> kRowBits) * (kCellRow - (std::size_t{1} << kRowBits));
+    }
+    [[nodiscard]] static std::int32_t column_of(const Point& point) {
+        const std::uint32_t cell = point.place >> (2 * kCellBits) & kLastCell;
+        return static_cast<std::int32_t>(cell << kCellBits | (point.place & (kCellSide - 1)));
+    }
+    [[nodiscard]] static std::int32_t row_of(const Point& point) {
+        const std::uint32_t cell = point.place >> (kTileBits + kCellBits) & kLastCell;
+        return static_cast<std::int32_t>(cell << kCellBits |
+                                         (point.place >> kCellBits & (kCellSide - 1)));
+    }
+};
+
+/// Half-rows (the ids of a row, then its depths) of a tile that are still to be written.
+struct PendingRows {
+    const Tile* tile = nullptr;  ///< null: nothing fell into it
+    std::size_t at = 0;          ///< where its first row begins in the picture
+    std::size_t width = 0;
+    std::int32_t next = 0, end = 0;  ///< half-rows
+
+    PendingRows() = default;
+    PendingRows(const Tile* samples, const Area& area, std::int32_t columns)
+        : tile(samples),
+          at(static_cast<std::size_t>(area.row) * static_cast<std::size_t>(columns) +
+             static_cast<std::size_t>(area.column)),
+          width(static_cast<std::size_t>(area.width)),
+          end(2 * area.height) {}
+};
+
+/// The tiles that nothing fell into, for whoever has time to write them.
+struct EmptyTiles {
+    std::vector<Area> areas;
+    std::atomic<std::size_t> next{0};
+};
+
+/// What a thread has to write to the picture. Its caches are passed by, and memory is slower than a
+/// core: so a little is written at a time, between triangles.
+struct TileWriter {
+    std::uint32_t* ids;
+    float* depth;
+    std::int32_t columns;  ///< of the picture
+    EmptyTiles& empty;
+    PendingRows drawn, cleared;
+
+    /// Half-rows to write now, or null when there are none left.
+    [[nodiscard]] PendingRows* pending() {
+        if (drawn.next != drawn.end) return &drawn;
+        if (cleared.next == cleared.end) {
+            if (empty.next.load(std::memory_order_relaxed) >= empty.areas.size()) return nullptr;
+            const std::size_t k = empty.next.fetch_add(1, std::memory_order_relaxed);
+            if (k >= empty.areas.size()) return nullptr;
+            cleared = PendingRows(nullptr, empty.areas[k], columns);
+        }
+        return &cleared;
     }
 };
 
@@ -143,17 +214,18 @@ void clear_tile(Tile& tile);
 void draw_points(const RasterInput& input, std::span<const Point> points, Tile& tile,
                  TileCounts& counts);
 
-/// Draws triangles, by number, into a tile: many small ones at a time, the rest one by one.
+/// Draws triangles, by number, into a tile: many small ones at a time, the rest one by one. Rows of
+/// other tiles are written meanwhile.
 void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                    TileCounts& counts);
+                    TileCounts& counts, TileWriter& writer);
 
 /// Draws one triangle of any size and steepness; tells the observer of each step.
 void draw_large(const RasterInput& input, std::uint32_t triangle, Tile& tile, TileCounts& counts);
 
-/// Writes a tile that nothing fell into, whose samples need not be cleared.
-void write_empty_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth);
+/// Writes what is left of the drawn tile.
+void write_drawn_tile(TileWriter& writer);
 
-/// Writes the tile's samples to the picture, past the caches where that is possible.
-void write_tile(const Tile& tile, const GridUnits& grid, std::uint32_t* ids, float* depth);
+/// Writes all that is left to write.
+void write_rest(TileWriter& writer);
 
 }  // namespace sightline::zbuffer

@@ -47,7 +47,8 @@ private:
         append_others(fetched.number, hn::AndNot(fetched.whole, fetched.wanted));
         Lanes t;
         M large;  // none: tiny boxes are small
-        const M kept = set_up_lanes(input_, picture, fetched, points, t, large);
+        const auto all = [](const CornerLanes&, const Lanes&, M kept) HWY_ATTR { return kept; };
+        const M kept = set_up_lanes(input_, picture, fetched, points, all, t, large);
         if (hn::AllFalse(kI, kept)) return;
         const M regular = depth_over_box(t, grid_.step_bits).regular;
         append_others(t.number, hn::AndNot(regular, kept));
@@ -80,10 +81,15 @@ private:
     HWY_INLINE void emit(M covered, VI column, VI row, VF z, VI number) {
         const VI tile = hn::Add(hn::Mul(hn::ShiftRight<kTileBits>(row), set(grid_.tiles_x)),
                                 hn::ShiftRight<kTileBits>(column));
-        const VI within = set(kTileSize - 1);
-        const VI place =
-            hn::Or(hn::ShiftLeft<2 * kTileBits>(tile),
-                   hn::Or(hn::ShiftLeft<kTileBits>(hn::And(row, within)), hn::And(column, within)));
+        constexpr int kCellBits = Tile::kCellBits;
+        const VI cell = set(Tile::kLastCell), in_cell = set(Tile::kCellSide - 1);
+        const VI cell_row = hn::And(hn::ShiftRight<kCellBits>(row), cell);
+        const VI cell_column = hn::And(hn::ShiftRight<kCellBits>(column), cell);
+        const VI rows = hn::Or(hn::ShiftLeft<kTileBits + kCellBits>(cell_row),
+                               hn::ShiftLeft<kCellBits>(hn::And(row, in_cell)));
+        const VI columns =
+            hn::Or(hn::ShiftLeft<2 * kCellBits>(cell_column), hn::And(column, in_cell));
+        const VI place = hn::Or(hn::ShiftLeft<2 * kTileBits>(tile), hn::Or(rows, columns));
         const auto mask = hn::RebindMask(kU, covered);
         hn::CompressStore(hn::BitCast(kU, place), mask, kU, out_.place.data() + out_.count);
         hn::CompressStore(z, hn::RebindMask(kF, covered), kF, out_.z.data() + out_.count);
@@ -152,17 +158,14 @@ void draw_tiny(const RasterInput& input, Selected& selected, Points& out) {
 
 void draw_points(const RasterInput& input, std::span<const Point> points, Tile& tile,
                  TileCounts& counts) {
-    constexpr std::uint32_t kMask = kTileSize - 1;
     for (const Point& p : points) {
-        const std::size_t at =
-            std::size_t{p.place >> kTileBits & kMask} * Tile::kStride + (p.place & kMask);
+        const std::size_t at = Tile::index(p);
         const float old = tile.depth[at];
         const bool nearer = p.z < old - kUncertain;
         if (nearer != (p.z <= old + kUncertain)) {  // too close to call
-            const auto column = static_cast<std::int32_t>(p.place & kMask);
-            const auto row = static_cast<std::int32_t>(p.place >> kTileBits & kMask);
-            if (!comes_before(input, p.id, tile.ids[at], input.grid.position(tile.column + column),
-                              input.grid.position(tile.row + row), counts))
+            if (!comes_before(input, p.id, tile.ids[at],
+                              input.grid.position(tile.column + Tile::column_of(p)),
+                              input.grid.position(tile.row + Tile::row_of(p)), counts))
                 continue;
             tile.depth[at] = p.z;
             tile.ids[at] = p.id;
