@@ -81,6 +81,13 @@ struct Camera {
 [[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
                                          Resolution resolution);
 
+/// A camera on a turntable: the options for `camera`, which make_camera() made of `options`, turned
+/// as a whole about the line along `axis` through its target, counter-clockwise when the axis
+/// points at the viewer. Eye, target, up and the size of the view are then given, so that nothing
+/// but near and far (where they are open) is fitted anew. Precondition: axis is not 0.
+[[nodiscard]] CameraOptions orbited(const CameraOptions& options, const Camera& camera,
+                                    glm::dvec3 axis, double degrees);
+
 /// The default camera of the benchmarks: box centre seen from (1, 0.6, 1.2), 2.2 bounding radii
 /// away, fov 40.
 [[nodiscard]] CameraOptions bench_camera(const Box& bounds);

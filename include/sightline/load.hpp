@@ -25,7 +25,7 @@ struct LoadOptions {
 /// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input
 /// and needs LoadOptions::format. OBJ, STL and PLY are parsed by readers of our own, other foreign
 /// formats in a child process; all with limits on time and memory, so that no file can bring the
-/// caller down.
+/// caller down. Objects that move are at rest; see posed().
 /// Errors name the file, the cause and the way out. Not thread-safe against fork().
 [[nodiscard]] Result<Scene> load_scene(std::span<const std::string> paths,
                                        const LoadOptions& options = {});
@@ -34,6 +34,10 @@ struct LoadOptions {
 [[nodiscard]] Result<Scene> load_scene_from_memory(std::span<const std::byte> bytes,
                                                    const std::string& name,
                                                    const LoadOptions& options);
+
+/// Reads the cameras of a path: a JSON list of objects with the keys of a camera in scene.json.
+/// Errors name the file and the value.
+[[nodiscard]] Result<std::vector<CameraOptions>> load_camera_path(const std::string& path);
 
 /// Extensions (lower case, without the dot) that load_scene() reads, sorted.
 [[nodiscard]] std::vector<std::string> loadable_extensions();

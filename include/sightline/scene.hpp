@@ -130,6 +130,15 @@ struct SceneCounts {
     std::uint64_t ignored_primitives = 0;  ///< points and lines
 };
 
+/// Objects that move as one. Their positions and quadrics in the scene are those at rest; see
+/// posed().
+struct Motion {
+    std::uint32_t first_object = 0, object_count = 0;
+    /// From rest to each frame: affine. After the last one they stay where they are; without any
+    /// they rest.
+    std::vector<glm::dmat4> frames;
+};
+
 /// A whole scene. Plain data, structure of arrays; filled by a loader or by hand, then made ready
 /// by finish_scene(). Read-only from then on, so any number of threads may use it.
 struct Scene {
@@ -159,9 +168,12 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Light> lights;            ///< empty: one headlight
     std::optional<CameraOptions> camera;  ///< from scene.json
+    /// Of objects that share no position and no normal with others; each object is in one at most.
+    std::vector<Motion> motions;
 
     // Derived by finish_scene().
     Box bounds;  ///< of the positions that triangles use, and of the quadrics
+    Box reach;   ///< of all frames of the motions, to fit cameras to; the bounds if nothing moves
     std::vector<std::uint8_t> degenerate;  ///< one byte a triangle; empty when none is
     Sheets sheets;
     SceneCounts counts;
@@ -178,6 +190,15 @@ struct Scene {
 /// Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
 /// does not depend on the number of threads.
 void finish_scene(Scene& scene);
+
+/// The finished scene as it stands in a frame, numbered from 0, without motions: triangles and
+/// objects keep their numbers, and `reach` remains that of all frames, so that a camera fitted to
+/// it stands still. A mirrored frame keeps fronts in front. Preconditions: the scene is finished;
+/// frames of objects with quadrics leave those regular. O(n log n), as finish_scene().
+[[nodiscard]] Scene posed(const Scene& scene, std::uint32_t frame);
+
+/// One byte a triangle, not 0: it moves. Empty when the scene has no motions.
+[[nodiscard]] std::vector<std::uint8_t> moving_triangles(const Scene& scene);
 
 /// Appends a quadric with an object and a material of its own. Precondition: all triangles are in
 /// the scene. finish_scene() is due afterwards.

@@ -3,16 +3,16 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cassert>
 #include <glm/common.hpp>
-#include <limits>
 #include <numeric>
 
+#include "scene/bounds.hpp"
 #include "scene/finish.hpp"
 #include "scene/joined_mesh.hpp"
+#include "scene/motion.hpp"
 #include "scene/sheets.hpp"
 #include "scene/topology.hpp"
 
@@ -21,35 +21,11 @@ namespace {
 
 using Range = tbb::blocked_range<std::uint32_t>;
 
-/// The box around `count` points, on all cores.
-template <class Point>
-Box bounds_of(std::uint32_t count, const Point& point) {
-    struct Extent {
-        glm::dvec3 lo{std::numeric_limits<double>::infinity()};
-        glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
-    };
-    if (count == 0) return {};
-    const Extent extent = tbb::parallel_reduce(
-        Range(0, count, 4096), Extent{},
-        [&](const Range& range, Extent partial) {
-            for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-                const glm::dvec3& p = point(i);
-                partial = {glm::min(partial.lo, p), glm::max(partial.hi, p)};
-            }
-            return partial;
-        },
-        [](const Extent& a, const Extent& b) {
-            return Extent{glm::min(a.lo, b.lo), glm::max(a.hi, b.hi)};
-        });
-    // -0 becomes +0: which zero a minimum keeps depends on the order.
-    return {extent.lo + 0.0, extent.hi + 0.0};
-}
-
 Box bounds_of_triangles(const Scene& scene) {
     Box box;
     for (int k = 0; k < 3; ++k) {
         const Box corners =
-            bounds_of(scene.triangle_count(), [&](std::uint32_t t) -> const glm::dvec3& {
+            bounds_of_points(scene.triangle_count(), [&](std::uint32_t t) -> const glm::dvec3& {
                 return scene.positions[scene.triangles[t][k]];
             });
         if (corners.empty()) return {};
@@ -82,6 +58,7 @@ void find_degenerate(Scene& scene) {
 /// What is derived, after the bounds of the triangles.
 void derive(Scene& scene, bool joined) {
     add_quadrics(scene.quadrics, scene.bounds);
+    scene.reach = reach_of(scene);
     find_degenerate(scene);
     scene.counts.polygons =
         std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
@@ -108,8 +85,8 @@ void finish_scene(Scene& scene) {
 
 void finish_joined_scene(Scene& scene) {
     scene.bounds =
-        bounds_of(static_cast<std::uint32_t>(scene.positions.size()),
-                  [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
+        bounds_of_points(static_cast<std::uint32_t>(scene.positions.size()),
+                         [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
     derive(scene, true);
 }
 

@@ -57,9 +57,10 @@ TEST(SceneFile, ErrorsNameTheKey) {
     EXPECT_EQ(error_in(R"({"models": [{"name": "x"}]})"), "scene.json: models[0].path: missing");
     EXPECT_EQ(error_in(R"({"models": [{"path": 7}]})"),
               "scene.json: models[0].path: expected a string");
-    EXPECT_EQ(error_in(in_model(R"("colour": 1)")),
-              "scene.json: models[1].colour: unknown key; known ones are path, name, transform, "
-              "material");
+    EXPECT_EQ(
+        error_in(in_model(R"("colour": 1)")),
+        "scene.json: models[1].colour: unknown key; known ones are path, name, transform, frames, "
+        "material");
     EXPECT_EQ(error_in(in_model(R"("transform": {"scale": 2})")),
               "scene.json: models[1].transform: expected a list");
     EXPECT_EQ(error_in(in_model(R"("transform": [{"rotate": 90}])")),
@@ -119,7 +120,7 @@ TEST(SceneFile, ErrorsOfSurfaces) {
     EXPECT_EQ(error_in(in_surface(R"("torus": {})")),
               where +
                   ".torus: unknown key; known ones are sphere, cylinder, cone, quadric, name, "
-                  "transform, material");
+                  "transform, frames, material");
     EXPECT_EQ(error_in(in_surface(R"("sphere": {"radius": 1})")),
               where + ".sphere.centre: missing");
     EXPECT_EQ(error_in(in_surface(R"("sphere": {"centre": [0,0,0], "radius": 0})")),

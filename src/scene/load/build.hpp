@@ -46,6 +46,9 @@ public:
     /// O(corners), plus triangulation. After an error the builder is of no more use.
     [[nodiscard]] Status append(const Soup& soup, const Placement& placement);
 
+    [[nodiscard]] std::uint32_t object_count() const {
+        return static_cast<std::uint32_t>(scene_.objects.size());
+    }
     /// The scene so far, not finished; the builder is empty afterwards.
     [[nodiscard]] Scene take() { return std::move(scene_); }
 

@@ -114,6 +114,7 @@ private:
     const LoadOptions& options_;
     SceneBuilder builder_;
     std::vector<SurfaceEntry> surfaces_;
+    std::vector<Motion> motions_;
     std::vector<Light> lights_;
     std::optional<CameraOptions> camera_;
 };
@@ -186,8 +187,11 @@ Status Loader::add_scene(std::string_view text, const std::string& name,
         placement.name = model.name;
         placement.transform = model.transform;
         placement.material = model.material;
+        const std::uint32_t first = builder_.object_count();
         Status added = add_file(path, extension_of(path), placement);
         if (!added) return added;
+        if (model.frames.empty()) continue;
+        motions_.push_back({first, builder_.object_count() - first, model.frames});
     }
     surfaces_.insert(surfaces_.end(), scene->surfaces.begin(), scene->surfaces.end());
     lights_.insert(lights_.end(), scene->lights.begin(), scene->lights.end());
@@ -199,16 +203,34 @@ Status Loader::add_scene(std::string_view text, const std::string& name,
     return success();
 }
 
+/// Whether all frames stay where later stages can compute.
+bool is_moderate(const Box& reach) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(reach.lo[axis] >= -kLargestCoordinate && reach.hi[axis] <= kLargestCoordinate)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 Result<Scene> Loader::finish(const std::string& name) {
     Scene scene = builder_.take();
     for (const SurfaceEntry& surface : surfaces_) {
         Material material;
         apply(surface.material, material);
         add_quadric(scene, surface.quadric, clean_text(surface.name), material);
+        if (surface.frames.empty()) continue;
+        motions_.push_back(
+            {static_cast<std::uint32_t>(scene.objects.size()) - 1, 1, surface.frames});
     }
+    scene.motions = std::move(motions_);
     scene.lights = std::move(lights_);
     scene.camera = camera_;
     finish_joined_scene(scene);
+    if (!is_moderate(scene.reach)) {
+        return bad_input(fmt::format(
+            "{}: the frames of a model take it beyond 1e30; use smaller numbers", name));
+    }
     if (scene.bounds.lo == scene.bounds.hi) {
         const glm::dvec3& p = scene.bounds.lo;
         return bad_input(
@@ -221,7 +243,7 @@ Result<Scene> Loader::finish(const std::string& name) {
 
 /// Runs `load` and turns what it throws into an error: nothing leaves the library but values.
 template <class Load>
-Result<Scene> guarded(const std::string& name, const Load& load) {
+auto guarded(const std::string& name, const Load& load) -> decltype(load()) {
     try {
         return load();
     } catch (const std::bad_alloc&) {
@@ -232,6 +254,9 @@ Result<Scene> guarded(const std::string& name, const Load& load) {
                                                 one_line(exception.what()))};
     }
 }
+
+/// Millions of cameras.
+constexpr std::size_t kCameraPathLimit = std::size_t{1} << 30;
 
 }  // namespace
 }  // namespace load
@@ -256,6 +281,16 @@ Result<Scene> load_scene_from_memory(std::span<const std::byte> bytes, const std
             return added.error();
         }
         return loader.finish(name);
+    });
+}
+
+Result<std::vector<CameraOptions>> load_camera_path(const std::string& path) {
+    return load::guarded(path, [&]() -> Result<std::vector<CameraOptions>> {
+        Result<load::InputFile> file = load::InputFile::open(path, load::kCameraPathLimit);
+        if (!file) return file.error();
+        const Result<std::vector<std::byte>> bytes = file->read_all();
+        if (!bytes) return bytes.error();
+        return load::parse_camera_path(load::text_of(*bytes), path);
     });
 }
 

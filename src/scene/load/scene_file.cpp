@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "math/elementary.hpp"
+#include "math/rotation.hpp"
 #include "scene/load/json_reader.hpp"
 #include "scene/load/text.hpp"
 #include "sightline/image.hpp"
@@ -29,7 +29,6 @@ glm::dmat4 scaling(const JsonValue& value) {
     return m;
 }
 
-/// Rodrigues' rotation formula, counter-clockwise seen against the axis.
 glm::dmat4 rotation(const JsonValue& value) {
     value.allow_keys({"axis", "degrees"});
     const glm::dvec3 direction = value.at("axis").direction();
@@ -37,18 +36,7 @@ glm::dmat4 rotation(const JsonValue& value) {
     if (!(length > 0) || !std::isfinite(length)) {
         value.at("axis").fail("expected a direction of moderate length");
     }
-    const glm::dvec3 axis = direction / length;
-    const double degrees = value.at("degrees").number();
-    const double s = math::sin_degrees(degrees), c = math::cos_degrees(degrees);
-    glm::dmat4 m(1.0);
-    for (int column = 0; column < 3; ++column) {
-        glm::dvec3 unit{0, 0, 0};
-        unit[column] = 1;
-        const glm::dvec3 turned =
-            c * unit + s * glm::cross(axis, unit) + ((1 - c) * axis[column]) * axis;
-        m[column] = glm::dvec4(turned, 0.0);
-    }
-    return m;
+    return glm::dmat4(math::rotation_about(direction / length, value.at("degrees").number()));
 }
 
 glm::dmat4 matrix(const JsonValue& value) {
@@ -77,6 +65,27 @@ glm::dmat4 transform(const JsonValue& value) {
     glm::dmat4 m(1.0);
     for (const JsonValue& item : value.items()) m = operation(item) * m;
     return m;
+}
+
+/// Whether a transform of coordinates up to 1e30 stays far from overflow.
+bool is_moderate(const glm::dmat4& m) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            if (!(std::abs(m[column][row]) <= kLargestCoordinate)) return false;
+        }
+    }
+    return true;
+}
+
+/// One list of operations a frame.
+std::vector<glm::dmat4> frames(const JsonValue& value) {
+    std::vector<glm::dmat4> result;
+    for (const JsonValue& item : value.items()) {
+        result.push_back(transform(item));
+        if (!is_moderate(result.back())) item.fail("expected numbers that stay below 1e30");
+    }
+    if (result.empty()) value.fail("expected at least one frame, a list of operations");
+    return result;
 }
 
 /// "#rrggbb" in sRGB, or three linear numbers.
@@ -119,7 +128,7 @@ MaterialOverride material(const JsonValue& value) {
 }
 
 ModelEntry model(const JsonValue& value) {
-    value.allow_keys({"path", "name", "transform", "material"});
+    value.allow_keys({"path", "name", "transform", "frames", "material"});
     ModelEntry entry;
     const JsonValue path = value.at("path");
     entry.path = path.text();
@@ -132,6 +141,7 @@ ModelEntry model(const JsonValue& value) {
     }
     value.if_has("name", [&](const JsonValue& v) { entry.name = v.text(); });
     value.if_has("transform", [&](const JsonValue& v) { entry.transform = transform(v); });
+    value.if_has("frames", [&](const JsonValue& v) { entry.frames = frames(v); });
     value.if_has("material", [&](const JsonValue& v) { entry.material = material(v); });
     return entry;
 }
@@ -175,7 +185,8 @@ Quadric general_quadric(const JsonValue& value) {
 }
 
 SurfaceEntry surface(const JsonValue& value) {
-    value.allow_keys({"sphere", "cylinder", "cone", "quadric", "name", "transform", "material"});
+    value.allow_keys(
+        {"sphere", "cylinder", "cone", "quadric", "name", "transform", "frames", "material"});
     SurfaceEntry entry;
     int kinds = 0;
     const auto kind = [&](const char* name, const auto& read) {
@@ -195,9 +206,17 @@ SurfaceEntry surface(const JsonValue& value) {
         entry.quadric = transformed(entry.quadric, transform(v));
     });
     value.if_has("material", [&](const JsonValue& v) { entry.material = material(v); });
-    if (!is_regular(entry.quadric)) {
-        value.fail("it is flat, or its size is not between 1e-30 and 1e30; change its numbers");
-    }
+    const char* const irregular =
+        "it is flat, or its size is not between 1e-30 and 1e30; change its numbers";
+    if (!is_regular(entry.quadric)) value.fail(irregular);
+    value.if_has("frames", [&](const JsonValue& v) {
+        entry.frames = frames(v);
+        for (std::size_t i = 0; i < entry.frames.size(); ++i) {
+            if (!is_regular(transformed(entry.quadric, entry.frames[i]))) {
+                v.items()[i].fail(irregular);
+            }
+        }
+    });
     return entry;
 }
 
@@ -287,6 +306,21 @@ Result<SceneDescription> parse_scene_description(std::string_view text, const st
     if (!document) return document.error();
     try {
         return description(JsonValue(*document));
+    } catch (const JsonFault& fault) {
+        return json_error(name, fault);
+    }
+}
+
+Result<std::vector<CameraOptions>> parse_camera_path(std::string_view text,
+                                                     const std::string& name) {
+    const Result<nlohmann::json> document = parse_json(text, name);
+    if (!document) return document.error();
+    try {
+        std::vector<CameraOptions> cameras;
+        const JsonValue root(*document);
+        for (const JsonValue& item : root.items()) cameras.push_back(camera(item));
+        if (cameras.empty()) root.fail("expected at least one camera");
+        return cameras;
     } catch (const JsonFault& fault) {
         return json_error(name, fault);
     }
