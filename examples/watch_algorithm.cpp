@@ -16,7 +16,10 @@ using sightline::StepKind;
 class Watcher final : public sightline::Observer {
 public:
     explicit Watcher(sightline::Resolution size)
-        : size_(size), looks_(std::size_t{size.width} * size.height), border_(looks_.size()) {}
+        : size_(size),
+          looks_(std::size_t{size.width} * size.height),
+          border_(looks_.size()),
+          decided_(looks_.size()) {}
 
     void step(const Step& s) override {
         switch (s.kind) {
@@ -25,6 +28,7 @@ public:
                 ++looks_[at(std::min(s.x0, size_.width - 1), s.y0)];
                 break;
             case StepKind::span_decided:
+                paint(s);
                 border_[at(s.x0, s.y0)] = 1;
                 break;
             case StepKind::tile_entered:
@@ -55,6 +59,14 @@ private:
     [[nodiscard]] std::size_t at(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{y} * size_.width + x;
     }
+    // Only list-priority algorithms decide a sample more than once.
+    void paint(const Step& s) {
+        for (std::uint32_t x = s.x0; x < s.x1; ++x) {
+            std::uint8_t& decided = decided_[at(x, s.y0)];
+            looks_[at(x, s.y0)] += decided;
+            decided = 1;
+        }
+    }
     // The upper and the left side: the others are those of the neighbours.
     void outline(const Step& s) {
         for (std::uint32_t x = s.x0; x < s.x1; ++x) border_[at(x, s.y0)] = 1;
@@ -63,7 +75,7 @@ private:
 
     sightline::Resolution size_;
     std::vector<std::uint32_t> looks_;
-    std::vector<std::uint8_t> border_;
+    std::vector<std::uint8_t> border_, decided_;
 };
 
 int fail(const sightline::Error& error) {

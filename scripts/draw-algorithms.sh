@@ -1,6 +1,7 @@
 #!/bin/sh
-# Draws how each algorithm of the registry decides the sample house: the pictures of
-# docs/algorithms/. The exhaustive ones have nothing to show.
+# Draws how each algorithm of the registry decides the sample house, where the painter is wrong,
+# and translucent surfaces: the pictures of docs/algorithms/. The exhaustive ones have nothing to
+# show.
 #
 #   scripts/draw-algorithms.sh FOLDER
 set -eu
@@ -14,3 +15,7 @@ build/release/bin/sightline algorithms --json |
     while read -r name; do
         build/release/bin/watch_algorithm samples/house.obj "$name" "$folder/$name.png"
     done
+build/release/bin/sightline compare samples/house.obj --algorithms painter,zbuffer \
+    --difference "$folder/painter-difference.png" --quiet >/dev/null
+build/release/bin/sightline render samples/crossing.obj --opacity 0.5 --algorithm depth-sort \
+    --samples 16 -o "$folder/transparency.png"

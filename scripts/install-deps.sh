@@ -9,8 +9,8 @@ set -eu
 
 build_packages='g++ cmake ninja-build
     libassimp-dev libglm-dev libtbb-dev libhwy-dev zlib1g-dev libopenexr-dev
-    libcli11-dev libfmt-dev nlohmann-json3-dev'
-test_packages='libgtest-dev libpng-dev libembree-dev libboost-dev clang libclang-rt-14-dev llvm
+    libboost-dev libcli11-dev libfmt-dev nlohmann-json3-dev'
+test_packages='libgtest-dev libpng-dev libembree-dev clang libclang-rt-14-dev llvm
     pkg-config ccache'
 lint_packages='clang-format clang-tidy'
 

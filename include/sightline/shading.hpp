@@ -33,6 +33,12 @@ enum class Shading {
 /// Whether normals are interpolated: gouraud and phong.
 [[nodiscard]] bool is_smooth(Shading shading);
 
+/// Whether a face, or a quadric, of the scene lets something shine through.
+[[nodiscard]] bool has_translucent_faces(const Scene& scene);
+/// Whether draw() blends: the algorithm has an order of surfaces, some are translucent, and it is
+/// colours that are shown, not numbers.
+[[nodiscard]] bool blends(const Algorithm& algorithm, Shading shading, const Scene& scene);
+
 struct ShadeOptions {
     Shading shading = Shading::flat;
     glm::vec4 background{1, 1, 1, 1};  ///< linear, premultiplied
@@ -92,6 +98,7 @@ struct DrawOptions {
     std::vector<Counter>* counters = nullptr;
     /// Called, when set, at every change of stage with the rows of pixels that are done.
     std::function<void(DrawStage, std::uint32_t rows_done)> on_stage;
+    const BspTree* tree = nullptr;  ///< see ResolveOptions
 };
 
 /// Resolves, shades and writes one or several files of a view. Where the algorithm makes its

@@ -1,10 +1,13 @@
-// Everything of the library: scene, camera, canonical screen scene, visibility, shading, pictures.
+// Everything of the library: scene, camera, canonical screen scene, visibility, order, shading,
+// pictures.
 #pragma once
 
+#include "sightline/bsp.hpp"           // IWYU pragma: export
 #include "sightline/camera.hpp"        // IWYU pragma: export
 #include "sightline/error.hpp"         // IWYU pragma: export
 #include "sightline/image.hpp"         // IWYU pragma: export
 #include "sightline/load.hpp"          // IWYU pragma: export
+#include "sightline/order.hpp"         // IWYU pragma: export
 #include "sightline/scene.hpp"         // IWYU pragma: export
 #include "sightline/screen_scene.hpp"  // IWYU pragma: export
 #include "sightline/shading.hpp"       // IWYU pragma: export

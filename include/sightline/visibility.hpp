@@ -89,6 +89,12 @@ enum class StepKind {
     quadrant_decided,  ///< all samples of a quadrant get an owner, or none (triangle; area)
     quadrant_scanned,  ///< the only triangle of a quadrant is drawn over the background (triangle;
                        ///< area)
+    polygons_tested,   ///< may a polygon be painted before another one? (triangle, other)
+    polygons_exchanged,  ///< the other one has to be painted first (triangle, other)
+    polygon_split,       ///< a polygon is cut by the plane of another one (triangle, other)
+    polygon_painted,     ///< a polygon, or a piece of one, gets its place in the order (triangle)
+    node_entered,        ///< a node of a BSP tree is met on the way from back to front (triangle:
+                         ///< the first of its plane, kNone where it is a plane of no triangle)
 };
 
 struct Step {
@@ -106,12 +112,17 @@ public:
     virtual void step(const Step& step) = 0;
 };
 
+class BspTree;
+struct PieceOrder;
+
 struct ResolveOptions {
     std::uint32_t samples_per_axis = 1;
     int threads = 0;  ///< 0 = all cores
     Observer* observer = nullptr;
     /// Appended to, when given: what the algorithm did.
     std::vector<Counter>* counters = nullptr;
+    /// For "bsp": the tree of the scene, see sightline/bsp.hpp. Made anew when there is none.
+    const BspTree* tree = nullptr;
 };
 
 /// An answer that is made in bands of rows, on demand: what a picture needs that is too large to
@@ -124,6 +135,33 @@ public:
     /// Fills a band's rows. ids and depth hold them from the band's first row on. Any number of
     /// threads may work on different bands.
     virtual void resolve_band(std::uint32_t band, std::uint32_t* ids, float* depth) = 0;
+    /// Appends what was counted so far to the counters of the options.
+    virtual void report() = 0;
+};
+
+/// A stretch of a row that a surface covers.
+struct Run {
+    std::uint32_t id = kNone;         ///< of the triangle in the scene
+    std::int32_t row = 0;             ///< of the grid
+    std::int32_t first = 0, end = 0;  ///< columns first .. end-1, at least one
+};
+
+class RunSink {
+public:
+    virtual ~RunSink() = default;
+    virtual void take(const Run& run) = 0;
+};
+
+/// All that covers the samples, also what is hidden, surface over surface from back to front: what
+/// transparency needs. It is made in bands of rows. Refers to its ScreenScene.
+class LayerSource {
+public:
+    virtual ~LayerSource() = default;
+    /// Rows of samples in a band; the last band may have fewer.
+    [[nodiscard]] virtual std::uint32_t band_rows() const = 0;
+    /// Hands over the runs of a band. Of two at one sample the farther one comes first. Any number
+    /// of threads may work on different bands.
+    virtual void visit_band(std::uint32_t band, RunSink& sink) = 0;
     /// Appends what was counted so far to the counters of the options.
     virtual void report() = 0;
 };
@@ -145,6 +183,12 @@ struct Algorithm {
     void (*resolve)(const ScreenScene&, const ResolveOptions&, Visibility&) = nullptr;
     std::unique_ptr<RowSource> (*open_rows)(const ScreenScene&, const SampleGrid&,
                                             const ResolveOptions&) = nullptr;
+    /// Set where the algorithm finds the order of all surfaces at a sample, so that translucent
+    /// ones can be blended.
+    std::unique_ptr<LayerSource> (*open_layers)(const ScreenScene&, const SampleGrid&,
+                                                const ResolveOptions&) = nullptr;
+    /// Set for list-priority algorithms; see sightline/order.hpp.
+    PieceOrder (*order)(const ScreenScene&, const ResolveOptions&) = nullptr;
 };
 
 /// All algorithms; the first exact one that is not exhaustive is the default.
@@ -159,6 +203,12 @@ struct Algorithm {
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm,
                                                            const ScreenScene& screen,
                                                            const ResolveOptions& options);
+
+/// The layers of an algorithm that has them (Algorithm::open_layers is set). Lifetimes and errors
+/// as for open_rows().
+[[nodiscard]] Result<std::unique_ptr<LayerSource>> open_layers(const Algorithm& algorithm,
+                                                               const ScreenScene& screen,
+                                                               const ResolveOptions& options);
 
 /// Runs an algorithm into `out`, whose memory is reused when it has the right size.
 /// Error (bad_option): samples_per_axis is not a power of two up to 16, or the grid is larger than

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "shading/blended_rows.hpp"
 #include "shading/draw_groups.hpp"
 #include "shading/picture_sink.hpp"
 #include "visibility/parallel.hpp"
@@ -82,30 +83,37 @@ class Drawing {
 public:
     Drawing(const ScreenScene& screen, const Algorithm& algorithm, const DrawOptions& options,
             std::span<const PictureFile> files)
-        : options_(options), files_(files), height_(screen.resolution().height) {
+        : options_(options),
+          files_(files),
+          resolution_(screen.resolution()),
+          height_(resolution_.height) {
         const auto needs_centres = [](const PictureFile& file) {
             return file.content != PictureContent::color || file.format == ImageFormat::exr;
         };
         const bool color = std::ranges::any_of(
             files, [](const PictureFile& file) { return file.content == PictureContent::color; });
         const bool centres = std::ranges::any_of(files, needs_centres);
-        ResolveOptions resolving{options.samples_per_axis, options.shading.threads, nullptr,
-                                 options.counters};
-        if (color) sources_.emplace_back(screen, algorithm, resolving);
-        if (centres && !(color && options.samples_per_axis == 1)) {
-            resolving.samples_per_axis = 1;
-            if (color) resolving.counters = nullptr;
-            sources_.emplace_back(screen, algorithm, resolving);
+        resolving_ = {options.samples_per_axis, options.shading.threads, nullptr, options.counters,
+                      options.tree};
+        blends_ = color && blends(algorithm, options.shading.shading, screen.scene());
+        if (color && !blends_) sources_.emplace_back(screen, algorithm, resolving_);
+        if (centres && (blends_ || !(color && options.samples_per_axis == 1))) {
+            ResolveOptions at_centres = resolving_;
+            at_centres.samples_per_axis = 1;
+            if (color) at_centres.counters = nullptr;
+            sources_.emplace_back(screen, algorithm, at_centres);
         }
     }
 
-    [[nodiscard]] Status run(const ScreenScene& screen, std::uint32_t group_rows) {
+    [[nodiscard]] Status run(const ScreenScene& screen, const Algorithm& algorithm,
+                             std::uint32_t group_rows) {
         enter(DrawStage::resolve);
-        for (GroupSource& source : sources_) {
-            if (Status done = source.open(); !done) return done;
-        }
+        if (Status done = open_sources(screen, algorithm); !done) return done;
         // Where there are no colours, or nothing at the centres, no sink asks for them.
-        PictureRows rows(screen, sources_.front().held(), sources_.back().held(), options_.shading);
+        const Visibility nothing{{screen.resolution(), 1}, {}, {}};
+        const Visibility& samples = sources_.empty() ? nothing : sources_.front().held();
+        const Visibility& centres = sources_.empty() ? nothing : sources_.back().held();
+        PictureRows rows(screen, samples, centres, options_.shading, blended_.get());
         const SinkSource source{rows,
                                 screen.resolution(),
                                 screen.camera().near_plane,
@@ -118,17 +126,36 @@ public:
                 return drawn;
             }
         }
+        if (blended_ != nullptr) blended_->layers().report();
         for (GroupSource& finished : sources_) finished.report();
         return success();
     }
 
 private:
+    [[nodiscard]] Status open_sources(const ScreenScene& screen, const Algorithm& algorithm) {
+        if (blends_) {
+            auto layers = open_layers(algorithm, screen, resolving_);
+            if (!layers) return layers.error();
+            const SampleGrid grid{screen.resolution(), options_.samples_per_axis};
+            blended_ =
+                std::make_unique<BlendedRows>(screen, grid, options_.shading, std::move(*layers));
+        }
+        for (GroupSource& source : sources_) {
+            if (Status done = source.open(); !done) return done;
+        }
+        return success();
+    }
+
     void enter(DrawStage stage) const {
         if (options_.on_stage) options_.on_stage(stage, done_);
     }
 
     [[nodiscard]] std::uint32_t rows_of_group(std::uint32_t wanted) const {
         std::uint64_t unit = 1, samples = 0;
+        if (blended_ != nullptr) {
+            unit = blended_->unit();
+            samples = 2 * std::uint64_t{resolution_.width};  // 16 bytes a pixel
+        }
         for (const GroupSource& source : sources_) {
             unit = std::lcm(unit, std::uint64_t{source.unit()});
             samples += source.samples_per_row();
@@ -145,6 +172,7 @@ private:
     /// them.
     [[nodiscard]] Status draw_group(const SinkSource& source, std::uint32_t count) {
         enter(DrawStage::resolve);
+        if (blended_ != nullptr) blended_->resolve(done_, count, resolving_);
         for (GroupSource& samples : sources_) {
             if (Status done = samples.resolve(done_, count); !done) return done;
         }
@@ -164,8 +192,12 @@ private:
 
     const DrawOptions& options_;
     std::span<const PictureFile> files_;
+    Resolution resolution_;
     std::uint32_t height_, done_ = 0;
-    std::vector<GroupSource> sources_;  // of the colours, of the centres, or of both in one
+    ResolveOptions resolving_;  // of the colours
+    bool blends_ = false;
+    std::unique_ptr<BlendedRows> blended_;  // the colours, where translucent surfaces are blended
+    std::vector<GroupSource> sources_;      // of the colours, of the centres, or of both in one
     std::vector<std::unique_ptr<PictureSink>> sinks_;
 };
 
@@ -175,7 +207,7 @@ Status draw_in_groups(const ScreenScene& screen, const Algorithm& algorithm,
                       const DrawOptions& options, std::span<const PictureFile> files,
                       std::uint32_t group_rows) {
     if (files.empty()) return success();
-    return Drawing(screen, algorithm, options, files).run(screen, group_rows);
+    return Drawing(screen, algorithm, options, files).run(screen, algorithm, group_rows);
 }
 
 Status draw(const ScreenScene& screen, const Algorithm& algorithm, const DrawOptions& options,

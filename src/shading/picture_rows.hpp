@@ -5,11 +5,14 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
 
+#include "image/png_rows.hpp"
 #include "math/arena.hpp"
+#include "shading/blended_rows.hpp"
 #include "shading/row_maps.hpp"
 #include "shading/row_shader.hpp"
 #include "sightline/shading.hpp"
@@ -21,16 +24,27 @@ namespace sightline {
 /// be set before it is made.
 class PictureRows {
 public:
-    /// `samples` is that of the colours, `centres` has one sample a pixel.
+    /// `samples` is that of the colours unless they come from `blended`; `centres` has one sample
+    /// a pixel.
     PictureRows(const ScreenScene& screen, const Visibility& samples, const Visibility& centres,
-                const ShadeOptions& options)
+                const ShadeOptions& options, const BlendedRows* blended = nullptr)
         : shader_(screen, samples, options),
           maps_(screen, centres, is_smooth(options.shading)),
-          caches_([this] { return shader_.make_cache(); }) {}
+          caches_([this] { return shader_.make_cache(); }),
+          blended_(blended),
+          width_(samples.grid.resolution.width) {}
 
-    void color(std::uint32_t y, glm::vec4* out) { shader_.shade(y, caches_.local(), out); }
+    void color(std::uint32_t y, glm::vec4* out) {
+        if (blended_ != nullptr)
+            std::copy_n(blended_->row(y), width_, out);
+        else
+            shader_.shade(y, caches_.local(), out);
+    }
     void rgba8(std::uint32_t y, std::array<std::uint8_t, 4>* out) {
-        shader_.shade_rgba8(y, caches_.local(), out);
+        if (blended_ != nullptr)
+            std::transform(blended_->row(y), blended_->row(y) + width_, out, color_to_rgba8);
+        else
+            shader_.shade_rgba8(y, caches_.local(), out);
     }
     [[nodiscard]] const RowMaps& maps() const { return maps_; }
 
@@ -38,6 +52,8 @@ private:
     RowShader shader_;
     RowMaps maps_;
     tbb::enumerable_thread_specific<FaceCache> caches_;
+    const BlendedRows* blended_;
+    std::uint32_t width_;
 };
 
 /// make(y) for rows first .. first + count - 1, in parallel.

@@ -42,6 +42,24 @@ std::string_view name_of(Shading shading) {
 
 bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading == Shading::phong; }
 
+bool has_translucent_faces(const Scene& scene) {
+    const std::size_t first_quadric = scene.objects.size() - scene.quadrics.size();
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+        const Object& object = scene.objects[o];
+        const bool is_seen = object.triangle_count > 0 || o >= first_quadric;
+        if (is_seen && object.material < scene.materials.size() &&
+            scene.materials[object.material].opacity < 1)
+            return true;
+    }
+    return false;
+}
+
+bool blends(const Algorithm& algorithm, Shading shading, const Scene& scene) {
+    const bool shows_numbers =
+        shading == Shading::depth || shading == Shading::normals || shading == Shading::ids;
+    return algorithm.open_layers != nullptr && !shows_numbers && has_translucent_faces(scene);
+}
+
 ColorImage shade(const ScreenScene& screen, const Visibility& visibility,
                  const ShadeOptions& options) {
     ColorImage image(visibility.grid.resolution.width,

@@ -17,6 +17,15 @@ void resolve_warnock(const ScreenScene& screen, const ResolveOptions& options, V
 using OpenRows = std::unique_ptr<RowSource>(const ScreenScene& screen, const SampleGrid& grid,
                                             const ResolveOptions& options);
 OpenRows open_scanline_zbuffer, open_scanline, open_spans;
+// The list-priority algorithms paint layers, in bands as well.
+OpenRows open_painter, open_depth_sort, open_bsp;
+
+using OpenLayers = std::unique_ptr<LayerSource>(const ScreenScene& screen, const SampleGrid& grid,
+                                                const ResolveOptions& options);
+OpenLayers open_depth_sort_layers, open_bsp_layers;
+
+using OrderPieces = PieceOrder(const ScreenScene& screen, const ResolveOptions& options);
+OrderPieces order_by_depth_sort, order_by_bsp, order_by_painter;
 
 /// Adds a counter, when somebody wants them.
 inline void count(const ResolveOptions& options, std::string_view name, std::uint64_t value) {

@@ -3,9 +3,11 @@
 #include <array>
 #include <bit>
 
+#include "sightline/bsp.hpp"
 #include "sightline/visibility.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/parallel.hpp"
+#include "visibility/piece_order.hpp"
 #include "visibility/quadrics.hpp"
 
 namespace sightline {
@@ -64,6 +66,35 @@ constexpr std::array kAlgorithms{
               .help = "divides the picture into quadrants until every one of them is simple",
               .space = Space::image,
               .resolve = resolve_warnock},
+    Algorithm{.name = "depth-sort",
+              .title = "depth sort",
+              .citation = "M. Newell, R. Newell, T. Sancha, A Solution to the Hidden Surface "
+                          "Problem, 1972",
+              .help = "orders polygons from back to front, and splits those that cross; blends",
+              .space = Space::list_priority,
+              .open_rows = open_depth_sort,
+              .open_layers = open_depth_sort_layers,
+              .order = order_by_depth_sort},
+    Algorithm{.name = kTreeAlgorithm,
+              .title = "binary space partition",
+              .citation =
+                  "H. Fuchs, Z. Kedem, B. Naylor, On Visible Surface Generation by A Priori "
+                  "Tree Structures, 1980",
+              .help = "a tree of planes, built once, orders the surfaces for any viewer; blends",
+              .space = Space::list_priority,
+              .exact = false,
+              .open_rows = open_bsp,
+              .open_layers = open_bsp_layers,
+              .order = order_by_bsp},
+    Algorithm{.name = "painter",
+              .title = "painter's algorithm",
+              .citation = "M. Newell, R. Newell, T. Sancha, A Solution to the Hidden Surface "
+                          "Problem, 1972, its first step",
+              .help = "paints by the farthest point; wrong where that does not tell the order",
+              .space = Space::list_priority,
+              .exact = false,
+              .open_rows = open_painter,
+              .order = order_by_painter},
     Algorithm{.name = "brute",
               .title = "brute force",
               .citation = "J. Foley, A. van Dam, S. Feiner, J. Hughes, Computer Graphics, 1990",
@@ -108,23 +139,35 @@ Status check_surfaces(const Algorithm& algorithm, const ScreenScene& screen) {
                                             "use zbuffer"};
 }
 
+Status check(const Algorithm& algorithm, const ScreenScene& screen, const ResolveOptions& options) {
+    if (Status valid = check_samples(screen, options.samples_per_axis); !valid) return valid;
+    return check_surfaces(algorithm, screen);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_rows(const Algorithm& algorithm, const ScreenScene& screen,
                                              const ResolveOptions& options) {
-    if (Status valid = check_samples(screen, options.samples_per_axis); !valid)
-        return valid.error();
-    if (Status valid = check_surfaces(algorithm, screen); !valid) return valid.error();
+    if (Status valid = check(algorithm, screen, options); !valid) return valid.error();
     if (algorithm.open_rows == nullptr)
         return Error{ErrorKind::bad_option,
                      std::string(algorithm.name) + " needs the whole picture in memory"};
     return algorithm.open_rows(screen, {screen.resolution(), options.samples_per_axis}, options);
 }
 
+Result<std::unique_ptr<LayerSource>> open_layers(const Algorithm& algorithm,
+                                                 const ScreenScene& screen,
+                                                 const ResolveOptions& options) {
+    if (Status valid = check(algorithm, screen, options); !valid) return valid.error();
+    if (algorithm.open_layers == nullptr)
+        return Error{ErrorKind::bad_option,
+                     std::string(algorithm.name) + " does not find the order of all surfaces"};
+    return algorithm.open_layers(screen, {screen.resolution(), options.samples_per_axis}, options);
+}
+
 Status resolve(const Algorithm& algorithm, const ScreenScene& screen, const ResolveOptions& options,
                Visibility& out) {
-    if (Status valid = check_samples(screen, options.samples_per_axis); !valid) return valid;
-    if (Status valid = check_surfaces(algorithm, screen); !valid) return valid;
+    if (Status valid = check(algorithm, screen, options); !valid) return valid;
     out.grid = {screen.resolution(), options.samples_per_axis};
     if (out.grid.count() > kMaxSamples)
         return Error{ErrorKind::bad_option,

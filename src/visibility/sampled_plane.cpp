@@ -63,6 +63,16 @@ std::int32_t DepthJudge::crossing(const SampledPlane& a, const SampledPlane& b, 
     return high;
 }
 
+Stretch DepthJudge::part_before(const SampledPlane& a, const SampledPlane& b, Stretch stretch,
+                                std::int32_t j) {
+    const std::int32_t first = stretch.first, last = stretch.end - 1;
+    const bool at_first = before(a, b, first, j);
+    const bool at_last = last == first ? at_first : before(a, b, last, j);
+    if (at_first == at_last) return {first, at_first ? stretch.end : first};
+    if (at_first) return {first, crossing(a, b, first, last, j)};
+    return {crossing(b, a, first, last, j), stretch.end};
+}
+
 void fill_run(const ScreenScene& screen, const SampleUnits& units, const SampledPlane& surface,
               std::int32_t j, std::int32_t first, std::int32_t end, std::uint32_t* ids,
               float* depth) {

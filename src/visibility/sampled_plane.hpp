@@ -34,6 +34,11 @@ struct SampledPlane {
 [[nodiscard]] SampledPlane sampled_plane_of(const ScreenScene& screen, const SampleUnits& units,
                                             std::uint32_t number);
 
+/// Columns first .. end-1 of a row.
+struct Stretch {
+    std::int32_t first, end;
+};
+
 /// Puts surfaces into the canonical order at a sample, and counts what that took.
 class DepthJudge {
 public:
@@ -56,6 +61,11 @@ public:
     /// before b at `first`, and b before a at `last`.
     [[nodiscard]] std::int32_t crossing(const SampledPlane& a, const SampledPlane& b,
                                         std::int32_t first, std::int32_t last, std::int32_t j);
+
+    /// The columns of a stretch of row j, not empty, where a is before b. Depths along a row are
+    /// linear, so its ends tell.
+    [[nodiscard]] Stretch part_before(const SampledPlane& a, const SampledPlane& b, Stretch stretch,
+                                      std::int32_t j);
 
     std::uint64_t comparisons = 0;  ///< all of them
     std::uint64_t exact = 0;        ///< those that went to integers

@@ -106,12 +106,12 @@ Scene cyclic_overlaps() {
 }  // namespace
 
 std::vector<NastyScene> nasty_scenes() {
-    return {{"polygons through a point", polygons_through_a_point()},
+    return {{"polygons through a point", polygons_through_a_point(), true},
             {"bundle of needles", bundle_of_needles()},
             {"nested rectangles", nested_rectangles()},
             {"coplanar checkerboard", coplanar_checkerboard()},
             {"penetrating combs", penetrating_combs()},
-            {"everything on sample points", everything_on_sample_points()},
+            {"everything on sample points", everything_on_sample_points(), true},
             {"cyclic overlaps", cyclic_overlaps()}};
 }
 

@@ -11,6 +11,7 @@ namespace sightline::testing {
 struct NastyScene {
     std::string_view name;
     Scene scene;
+    bool entangled = false;  ///< nearly every polygon crosses nearly every other one
 };
 
 /// Deterministic; each has some hundred to some thousand triangles in [-1, 1]^3.

@@ -3,12 +3,26 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace sightline {
 namespace {
 
 using namespace testing;
 
-void expect_agreement(const NastyScene& nasty, const Camera& camera, std::uint32_t per_axis) {
+// Hundreds of polygons that all cross one another leave a list-priority algorithm half a million
+// pieces: seconds a view. One view of them is in every run, all are in make test-full.
+bool has_time_for(const Algorithm& algorithm, const NastyScene& nasty, bool every_run) {
+    if (!nasty.entangled || algorithm.space != Space::list_priority) return true;
+#ifdef SIGHTLINE_SANITIZED
+    return false;
+#else
+    return every_run || std::getenv("SIGHTLINE_FULL") != nullptr;
+#endif
+}
+
+void expect_agreement(const NastyScene& nasty, const Camera& camera, std::uint32_t per_axis,
+                      bool every_run = false) {
     const ScreenScene screen = must(project(nasty.scene, camera, {Cull::none, 0}));
     ResolveOptions options;
     options.samples_per_axis = per_axis;
@@ -18,6 +32,7 @@ void expect_agreement(const NastyScene& nasty, const Camera& camera, std::uint32
     EXPECT_GT(covered, 100u) << nasty.name;
     for (const Algorithm& algorithm : algorithms()) {
         if (!algorithm.exact || algorithm.exhaustive) continue;
+        if (!has_time_for(algorithm, nasty, every_run)) continue;
         const Visibility seen = run(std::string(algorithm.name), screen, options);
         EXPECT_EQ(count_differences(truth, seen), 0u)
             << nasty.name << ", " << algorithm.name << ", " << per_axis << " per axis";
@@ -49,7 +64,7 @@ TEST(Nasty, EveryExactAlgorithmEqualsBruteForceFromInside) {
         options.target = glm::dvec3(0.5, 0.4, 0.9);
         options.fov = 100;
         const Camera camera = must(make_camera(options, nasty.scene.bounds, {64, 64}));
-        expect_agreement(nasty, camera, 1);
+        expect_agreement(nasty, camera, 1, true);
     }
 }
 

@@ -1,0 +1,113 @@
+#include "shading/blended_rows.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "shading/surface.hpp"
+#include "visibility/parallel.hpp"
+
+namespace sightline {
+
+namespace {
+
+/// The colours of the samples of a band while surfaces are laid over them.
+class BlendSink final : public RunSink {
+public:
+    BlendSink(const ScreenScene& screen, const SampleUnits& units, const SampleShader& shader,
+              glm::vec4 background, std::int32_t first_row, std::int32_t rows)
+        : scene_(screen.scene()),
+          units_(units),
+          shader_(shader),
+          cache_(shader),
+          over_(screen, units, Ties::lower_id_wins),
+          first_row_(first_row),
+          owners_(width() * static_cast<std::size_t>(rows), kNone),
+          colors_(owners_.size(), background) {}
+
+    void take(const Run& run) override {
+        const std::size_t start = static_cast<std::size_t>(run.row - first_row_) * width();
+        std::uint32_t* owners = owners_.data() + start;
+        glm::vec4* colors = colors_.data() + start;
+        const float opacity = material_of(scene_, run.id).opacity;
+        over_.paint(run, owners, [&](std::int32_t first, std::int32_t end) {
+            // Nobody is hidden by a translucent owner, so it need not be remembered.
+            std::fill(owners + first, owners + end, opacity < 1 ? kNone : run.id);
+            if (const PixelColor* constant = cache_.constant_color(run.id)) {
+                const glm::vec4 color = constant->linear;
+                blend(colors, first, end, opacity, [&](std::int32_t) { return color; });
+                return;
+            }
+            const ShadedFace& face = cache_.face(run.id);
+            blend(colors, first, end, opacity, [&](std::int32_t i) {
+                return shader_.varying_color(face, units_.position(i), units_.position(run.row));
+            });
+        });
+    }
+
+    [[nodiscard]] const std::vector<glm::vec4>& colors() const { return colors_; }
+
+private:
+    [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(units_.columns); }
+
+    /// Porter and Duff's "over"; the colours of surfaces come with alpha 1.
+    template <class ColorAt>
+    static void blend(glm::vec4* colors, std::int32_t first, std::int32_t end, float opacity,
+                      const ColorAt& color_at) {
+        for (std::int32_t i = first; i < end; ++i)
+            colors[i] = opacity * color_at(i) + (1 - opacity) * colors[i];
+    }
+
+    const Scene& scene_;
+    SampleUnits units_;
+    const SampleShader& shader_;
+    FaceCache cache_;
+    Over over_;
+    std::int32_t first_row_;
+    std::vector<std::uint32_t> owners_;  // the opaque surface that is seen, if one is
+    std::vector<glm::vec4> colors_;
+};
+
+/// Box filter over the samples of the pixels of a row, summed up row by row as everywhere.
+void average(const glm::vec4* samples, std::size_t columns, std::uint32_t n, std::uint32_t width,
+             glm::vec4* out) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+        glm::vec4 sum{0, 0, 0, 0};
+        for (std::uint32_t j = 0; j < n; ++j)
+            for (std::uint32_t i = 0; i < n; ++i) sum += samples[j * columns + x * n + i];
+        out[x] = sum / static_cast<float>(n * n);
+    }
+}
+
+}  // namespace
+
+BlendedRows::BlendedRows(const ScreenScene& screen, const SampleGrid& grid,
+                         const ShadeOptions& options, std::unique_ptr<LayerSource> layers)
+    : screen_(screen),
+      grid_(grid),
+      units_(grid, screen.subpixel_bits()),
+      shader_(screen, options.shading),
+      background_(options.background),
+      layers_(std::move(layers)) {}
+
+void BlendedRows::resolve(std::uint32_t first, std::uint32_t count, const ResolveOptions& options) {
+    pixels_.resize(std::size_t{count} * grid_.resolution.width);
+    const std::size_t band = std::size_t{unit()} * grid_.resolution.width;
+    for_each_index((count + unit() - 1) / unit(), options, [&](std::uint32_t b) {
+        resolve_band(first / unit() + b, pixels_.data() + b * band);
+    });
+}
+
+void BlendedRows::resolve_band(std::uint32_t band, glm::vec4* out) {
+    const auto height = static_cast<std::int32_t>(layers_->band_rows());
+    const std::int32_t first = static_cast<std::int32_t>(band) * height;
+    const std::int32_t rows = std::min(units_.rows - first, height);
+    BlendSink sink(screen_, units_, shader_, background_, first, rows);
+    layers_->visit_band(band, sink);
+    const std::uint32_t n = grid_.per_axis, width = grid_.resolution.width;
+    const std::size_t columns = grid_.columns();
+    const glm::vec4* samples = sink.colors().data();
+    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rows) / n; ++y)
+        average(samples + y * n * columns, columns, n, width, out + std::size_t{y} * width);
+}
+
+}  // namespace sightline
