@@ -109,7 +109,7 @@ std::vector<Row> report_rows(const BenchOptions& options, const BenchScene& benc
                              const OtherTimes& others) {
     const double mid = median(times.frame), tris = bench.scene.triangle_count();
     const double pixels = double{1} * options.resolution.width * options.resolution.height;
-    return {
+    std::vector<Row> rows = {
         {"mesh", "mesh", mesh_name(options), ""},
         {"triangles", "triangles", bench.scene.triangle_count(), ""},
         {"vertices", "vertices", std::uint64_t{bench.scene.positions.size()}, ""},
@@ -135,6 +135,12 @@ std::vector<Row> report_rows(const BenchOptions& options, const BenchScene& benc
         {"mpix_per_s", "pixels", pixels / mid / 1e3, "million/s"},
         {"peak_rss_mb", "peak memory", peak_memory_mib(), "MiB"},
     };
+    if (bench.tree)
+        rows.push_back({"tree_ms", "build the tree", milliseconds(bench.tree_ms), "ms"});
+    if (options.algorithm->order != nullptr)
+        rows.push_back(
+            {"order_ms", "order alone (median)", milliseconds(median(times.order)), "ms"});
+    return rows;
 }
 
 Result<int> run_stages(const BenchOptions& options) {

@@ -74,6 +74,7 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
     progress.stage("loading");
     Result<Scene> loaded = load(options);
     if (!loaded) return loaded.error();
+    if (!loaded->motions.empty()) *loaded = posed(*loaded, 0);
     if (!options.algorithm->quadrics) {
         tessellate_for(fmt::format("'{}' takes triangles only", options.algorithm->name), *loaded,
                        options.common.quiet, progress);
@@ -97,12 +98,21 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
     bench.scene = std::move(*scene);
     bench.camera = *camera;
     bench.prepare_ms = watch.lap();
+    if (options.algorithm->name == kTreeAlgorithm) {
+        progress.stage("building the tree");
+        auto tree = build_bsp(bench.scene, {options.common.threads, {}});
+        if (!tree) return tree.error();
+        bench.tree = std::move(*tree);
+        bench.tree_ms = watch.lap();
+    }
     return bench;
 }
 
 Result<FrameTimes> time_frames(const BenchOptions& options, const BenchScene& bench,
                                Progress& progress, ScreenScene& screen, Visibility& visibility) {
     FrameTimes times;
+    ResolveOptions resolving{1, options.common.threads};
+    resolving.tree = bench.tree ? &*bench.tree : nullptr;
     for (unsigned i = 0; i < kWarmUps + options.frames; ++i) {
         progress.stage("frame", i + 1, kWarmUps + options.frames);
         Stopwatch watch;
@@ -110,11 +120,19 @@ Result<FrameTimes> time_frames(const BenchOptions& options, const BenchScene& be
             project(bench.scene, bench.camera, {options.cull, options.common.threads}, screen);
         if (!projected) return projected.error();
         const double project_ms = watch.lap();
-        const Status done =
-            resolve(*options.algorithm, screen, {1, options.common.threads}, visibility);
+        const Status done = resolve(*options.algorithm, screen, resolving, visibility);
         if (!done) return done.error();
         const double resolve_ms = watch.lap();
+        double order_ms = 0;
+        if (options.algorithm->order != nullptr) {
+            const auto stop_at_once = [](const OrderedPiece&) { return false; };
+            const Status ordered =
+                for_each_back_to_front(*options.algorithm, screen, resolving, stop_at_once);
+            if (!ordered) return ordered.error();
+            order_ms = watch.lap();
+        }
         if (i < kWarmUps) continue;
+        times.order.push_back(order_ms);
         times.project.push_back(project_ms);
         times.resolve.push_back(resolve_ms);
         times.frame.push_back(project_ms + resolve_ms);

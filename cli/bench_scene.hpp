@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct BenchScene {
     Camera camera;
     bool own_camera = false;  ///< the camera is not wholly that of the benchmarks
     double load_ms = 0, prepare_ms = 0;
+    std::optional<BspTree> tree;  ///< for the algorithm that wants one
+    double tree_ms = 0;
 };
 
 [[nodiscard]] Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress);
@@ -41,6 +44,7 @@ struct BenchScene {
 /// Milliseconds of every timed frame.
 struct FrameTimes {
     std::vector<double> project, resolve, frame;
+    std::vector<double> order;  ///< what a list-priority algorithm needs before it paints
 };
 
 /// Projects and resolves into the same memory again and again: 3 frames to warm up, then

@@ -221,6 +221,7 @@ Result<int> run(const Arguments& arguments) {
     progress.stage("loading");
     Result<Scene> scene = load_scene(options->models.paths, options->models.options);
     if (!scene) return scene.error();
+    if (!scene->motions.empty()) *scene = posed(*scene, 0);
     tessellate_for("compared on triangles", *scene, options->common.quiet, progress);
     const double load_ms = watch.lap();
     const auto camera = camera_for(*scene, options->camera, options->resolution);

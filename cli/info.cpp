@@ -214,8 +214,9 @@ Result<int> run(const Arguments& arguments) {
     Progress progress(options->common.quiet);
     Stopwatch watch;
     progress.stage("loading");
-    const Result<Scene> scene = load_scene(options->models.paths, options->models.options);
+    Result<Scene> scene = load_scene(options->models.paths, options->models.options);
     if (!scene) return scene.error();
+    if (!scene->motions.empty()) *scene = posed(*scene, 0);
     const auto camera = camera_for(*scene, options->camera, options->resolution);
     if (!camera) return camera.error();
     progress.clear();

@@ -65,14 +65,4 @@ Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules) {
     return success();
 }
 
-bool has_translucent_faces(const Scene& scene) {
-    const Object* const first_quadric =
-        scene.objects.data() + (scene.objects.size() - scene.quadrics.size());
-    const auto is_quadric = [&](const Object& object) { return &object >= first_quadric; };
-    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-        const bool is_seen = object.triangle_count > 0 || is_quadric(object);
-        return is_seen && scene.materials[object.material].opacity < 1;
-    });
-}
-
 }  // namespace sightline::cli

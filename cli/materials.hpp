@@ -20,7 +20,4 @@ struct OpacityRule {
 /// Applies rules in order. Error (bad_option): a name that no material and no object has.
 [[nodiscard]] Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules);
 
-/// Whether a face that is drawn lets something shine through.
-[[nodiscard]] bool has_translucent_faces(const Scene& scene);
-
 }  // namespace sightline::cli

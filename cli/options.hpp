@@ -102,7 +102,8 @@ struct CommonOptions {
 /// too much (eye, target and a direction or view), what `under` said gives way.
 [[nodiscard]] CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& over);
 
-/// The camera of a loaded scene: the command line over that of a scene file.
+/// The camera of a loaded scene: the command line over that of a scene file. It is fitted to all
+/// frames of what moves.
 [[nodiscard]] Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked,
                                         Resolution resolution);
 

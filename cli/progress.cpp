@@ -22,12 +22,16 @@ Progress::~Progress() { clear(); }
 void Progress::stage(std::string_view what) {
     if (!shown_) return;
     line_is_dirty = true;
-    fmt::print(stderr, "{}sightline: {} ...", kEraseLine, what);
+    fmt::print(stderr, "{}sightline: {}{} ...", kEraseLine, frame_, what);
     std::fflush(stderr);
 }
 
 void Progress::stage(std::string_view what, unsigned done, unsigned all) {
     if (shown_) stage(fmt::format("{} {}/{}", what, done, all));
+}
+
+void Progress::frame(unsigned number, unsigned all) {
+    if (shown_) frame_ = fmt::format("frame {} of {}: ", number, all);
 }
 
 void Progress::clear() {

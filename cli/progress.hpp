@@ -1,6 +1,7 @@
 // What the program is doing, on a terminal and nowhere else.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace sightline::cli {
@@ -17,11 +18,14 @@ public:
     void stage(std::string_view what);
     /// "what 3/15".
     void stage(std::string_view what, unsigned done, unsigned all);
+    /// From now on every line begins with "frame 3 of 36".
+    void frame(unsigned number, unsigned all);
     /// Takes the line away, so that something else can be printed.
     void clear();
 
 private:
     bool shown_ = false;
+    std::string frame_;
 };
 
 /// Async-signal-safe: gives a terminal its clean line back.

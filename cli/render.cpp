@@ -5,7 +5,7 @@
 
 #include "errors.hpp"
 #include "progress.hpp"
-#include "render_frame.hpp"
+#include "render_frames.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "suggest.hpp"
@@ -15,6 +15,7 @@ namespace sightline::cli {
 namespace {
 
 constexpr std::array kPictureFormats = {ImageFormat::png, ImageFormat::exr, ImageFormat::npy};
+constexpr std::string_view kTreePieces = "bsp pieces";  // what the algorithm counts
 constexpr std::array kMaskFormats = {ImageFormat::npy, ImageFormat::png};
 
 // -- options -----------------------------------------------------------------------------------
@@ -71,7 +72,7 @@ void read_outputs(OptionReader& reader, RenderOptions& options) {
             wrong_use("nothing to write; name a file, as in -o picture.png (or --depth, "
                       "--ids, --normals, --mask)"));
     }
-    check_outputs(reader, outputs, options.models.paths);
+    check_frame_outputs(reader, options, outputs);
     const bool to_stdout = std::any_of(outputs.begin(), outputs.end(),
                                        [](const Output& output) { return output.path == "-"; });
     if (to_stdout && options.common.json) {
@@ -94,6 +95,8 @@ Result<RenderOptions> read_options(const Arguments& arguments) {
     read_size(reader, options);
     read_shading(reader, options);
     options.common = read_common(reader);
+    read_frames(reader, options);
+    read_tree_files(reader, options);
     read_outputs(reader, options);
     if (reader.error()) return *reader.error();
     return options;
@@ -124,21 +127,33 @@ Result<Scene> load(const RenderOptions& options, Progress& progress) {
 
 // -- what is reported --------------------------------------------------------------------------
 
-struct Times {
-    double load = 0, project = 0;
-};
+std::vector<Row> time_rows(const RenderOptions& options, const Scene& scene, double load_ms,
+                           const Rendered& rendered) {
+    std::vector<Row> rows = {{"load_ms", "load", milliseconds(load_ms), "ms"}};
+    if (options.algorithm->name == kTreeAlgorithm) {
+        rows.push_back({"tree_ms", "build or load the tree", milliseconds(rendered.tree), "ms"});
+    }
+    if (!scene.motions.empty()) {
+        rows.push_back({"pose_ms", "move objects", milliseconds(rendered.pose), "ms"});
+    }
+    rows.push_back({"project_ms", "project", milliseconds(rendered.project), "ms"});
+    rows.push_back({"resolve_ms", "resolve", milliseconds(rendered.drawn.resolve), "ms"});
+    rows.push_back({"shade_ms", "shade", milliseconds(rendered.drawn.shade), "ms"});
+    rows.push_back({"write_ms", "write", milliseconds(rendered.drawn.write), "ms"});
+    if (options.frames.count > 0) {
+        rows.push_back({"frames", "frames", options.frames.end - options.frames.first, ""});
+    }
+    return rows;
+}
 
 std::vector<Row> report_rows(const RenderOptions& options, Shading shading, const Scene& scene,
-                             const ProjectCounts& counts, const Drawn& drawn, const Times& times) {
-    const double candidates = static_cast<double>(counts.triangles - counts.degenerate);
-    const double culled =
-        candidates > 0 ? 100 * static_cast<double>(counts.culled) / candidates : 0;
-    std::vector<Row> rows = {
-        {"load_ms", "load", milliseconds(times.load), "ms"},
-        {"project_ms", "project", milliseconds(times.project), "ms"},
-        {"resolve_ms", "resolve", milliseconds(drawn.resolve), "ms"},
-        {"shade_ms", "shade", milliseconds(drawn.shade), "ms"},
-        {"write_ms", "write", milliseconds(drawn.write), "ms"},
+                             double load_ms, const Rendered& rendered) {
+    const ProjectCounts& counts = rendered.counts;
+    const double culled = rendered.candidates > 0 ? 100 * static_cast<double>(counts.culled) /
+                                                        static_cast<double>(rendered.candidates)
+                                                  : 0;
+    std::vector<Row> rows = time_rows(options, scene, load_ms, rendered);
+    const Row more[] = {
         {"algorithm", "algorithm", options.algorithm->name, ""},
         {"shading", "shading", name_of(shading), ""},
         {"width", "width", options.resolution.width, "pixels"},
@@ -158,10 +173,16 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"clipped", "triangles clipped", counts.clipped, ""},
         {"pieces", "pieces they left", counts.pieces, ""},
     };
-    for (const Counter& counter : drawn.counters) {
+    rows.insert(rows.end(), std::begin(more), std::end(more));
+    for (const Counter& counter : rendered.drawn.counters) {
         std::string key = counter.name;
         std::replace(key.begin(), key.end(), ' ', '_');
         rows.push_back({key, counter.name, counter.value, ""});
+        if (counter.name == kTreePieces && scene.triangle_count() > 0) {
+            const double share = static_cast<double>(counter.value) / scene.triangle_count();
+            rows.push_back({"bsp_pieces_per_triangle", "bsp pieces a triangle",
+                            std::round(100 * share) / 100, ""});
+        }
     }
     rows.push_back({"peak_rss_mb", "peak memory", std::round(10 * peak_memory_mib()) / 10, "MiB"});
     return rows;
@@ -175,6 +196,7 @@ Status report(const RenderOptions& options, const std::vector<Row>& rows) {
 
 void warn_about_translucency(const RenderOptions& options, const Scene& scene, Progress& progress) {
     if (options.common.quiet || !has_translucent_faces(scene)) return;
+    if (options.algorithm->open_layers != nullptr) return;
     progress.clear();
     fmt::print(stderr, "sightline: warning: '{}' can't blend: translucent faces are drawn opaque\n",
                options.algorithm->name);
@@ -185,31 +207,20 @@ Result<int> run(const Arguments& arguments) {
     if (!parsed) return parsed.error();
     const RenderOptions& options = *parsed;
     Progress progress(options.common.quiet);
-    Stopwatch watch;
-    Times times;
+    const Stopwatch watch;
 
     progress.stage("loading");
     const Result<Scene> scene = load(options, progress);
     if (!scene) return scene.error();
     const Shading shading = decide_shading(options, *scene);
     warn_about_translucency(options, *scene, progress);
-    times.load = watch.lap();
+    const double load_ms = watch.ms();
 
-    progress.stage("projecting");
-    const auto camera = camera_for(*scene, options.camera, options.resolution);
-    if (!camera) return camera.error();
-    const auto screen = project(*scene, *camera, {options.cull, options.common.threads});
-    if (!screen) return screen.error();
-    times.project = watch.lap();
-
-    const auto drawn = draw_outputs(options, shading, *screen, progress);
-    if (!drawn) return drawn.error();
+    const auto rendered = render_frames(options, shading, *scene, progress);
+    if (!rendered) return rendered.error();
     progress.clear();
-    if (Status done =
-            report(options, report_rows(options, shading, *scene, screen->counts(), *drawn, times));
-        !done) {
-        return done.error();
-    }
+    const auto rows = report_rows(options, shading, *scene, load_ms, *rendered);
+    if (Status done = report(options, rows); !done) return done.error();
     return 0;
 }
 
@@ -235,10 +246,24 @@ const std::array kLookRows = {
     Option{"--opacity", "[NAME=]F", "0..1, of everything or of one material or object; repeatable"},
 };
 
-const std::array kGroups = {OptionGroup{"Output", kOutputRows}, OptionGroup{"Picture", kLookRows},
-                            OptionGroup{"Camera", kCameraOptions},
-                            OptionGroup{"Input", kModelOptions},
-                            OptionGroup{"Common", kCommonOptions}};
+constexpr std::array kFrameRows = {
+    Option{"--frames", "N", "draw N pictures; '####' in each output's name becomes 0001 to N"},
+    Option{"--orbit", "AXIS[,START,END]",
+           "turn the camera about x, y or z through its target, in degrees (default: 0,360)"},
+    Option{"--path", "FILE", "a JSON list of cameras, one a frame, keys as the options' names"},
+    Option{"--frame", "K", "draw only frame K of --frames N"},
+};
+
+constexpr std::array kTreeRows = {
+    Option{"--bsp-save", "FILE", "keep the tree of --algorithm bsp in a file"},
+    Option{"--bsp-load", "FILE", "take the tree from a file, made of the same scene"},
+};
+
+const std::array kGroups = {
+    OptionGroup{"Output", kOutputRows},    OptionGroup{"Picture", kLookRows},
+    OptionGroup{"Camera", kCameraOptions}, OptionGroup{"Frames", kFrameRows},
+    OptionGroup{"BSP tree", kTreeRows},    OptionGroup{"Input", kModelOptions},
+    OptionGroup{"Common", kCommonOptions}};
 
 constexpr std::array kExamples = {
     Example{"sightline render bunny.obj -o bunny.png", "the whole model, isometric"},
@@ -249,6 +274,8 @@ constexpr std::array kExamples = {
             "maps for a data set, without a picture"},
     Example{"cat bunny.ply | sightline render - --format ply -o - --output-format png > b.png",
             "in a pipe"},
+    Example{"sightline render bunny.obj --frames 36 --orbit y -o frame_####.png",
+            "a turntable: frame_0001.png to frame_0036.png"},
 };
 
 }  // namespace

@@ -98,17 +98,16 @@ void read_size(OptionReader& reader, RenderOptions& options) {
     }
 }
 
-Result<Drawn> draw_outputs(const RenderOptions& options, Shading shading, const ScreenScene& screen,
-                           Progress& progress) {
+Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
+                           std::span<const PictureOutput> pictures, Progress& progress) {
     std::vector<Output> outputs;
-    for (const PictureOutput& picture : options.outputs) outputs.push_back(picture.output);
+    for (const PictureOutput& picture : pictures) outputs.push_back(picture.output);
     OutputBatch batch(std::move(outputs));
     std::vector<PictureFile> files;
     for (std::size_t i = 0; i < batch.outputs().size(); ++i) {
         const Output& output = batch.outputs()[i];
-        const auto picture = std::ranges::find_if(options.outputs, [&](const PictureOutput& p) {
-            return p.output.option == output.option;
-        });
+        const auto picture = std::ranges::find_if(
+            pictures, [&](const PictureOutput& p) { return p.output.option == output.option; });
         files.push_back({picture->content, batch.path(i), output.format, options.layers.normals,
                          options.layers.ids});
         if (output.format == ImageFormat::exr) use_exr_threads(options.common.threads);
@@ -117,10 +116,11 @@ Result<Drawn> draw_outputs(const RenderOptions& options, Shading shading, const 
     StageWatch watch(drawn, progress, options.resolution.height);
     const DrawOptions drawing{
         options.per_axis,
-        {shading, linear_color(options.background), options.common.threads},
+        {view.shading, linear_color(options.background), options.common.threads},
         &drawn.counters,
-        [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); }};
-    Status done = batch.publish(draw(screen, *options.algorithm, drawing, files));
+        [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); },
+        view.tree};
+    Status done = batch.publish(draw(view.screen, *options.algorithm, drawing, files));
     watch.leave();
     if (!done) return done.error();
     return drawn;

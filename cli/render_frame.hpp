@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "materials.hpp"
@@ -24,6 +26,24 @@ struct PictureOutput {
     Output output;
 };
 
+struct Orbit {
+    glm::dvec3 axis{0, 1, 0};
+    double start = 0, end = 360;  ///< degrees
+};
+
+/// Of --frames: numbers from 0, while those of files and messages begin with 1.
+struct FrameOptions {
+    std::uint32_t count = 0;           ///< 0: one picture, which has no number
+    std::uint32_t first = 0, end = 1;  ///< those that are drawn
+    std::optional<Orbit> orbit;
+    std::vector<CameraOptions> path;  ///< at least `count`, or none
+};
+
+/// Of --bsp-load and --bsp-save; empty: not given.
+struct TreeFiles {
+    std::string load, save;
+};
+
 struct RenderOptions {
     CommonOptions common;
     Models models;
@@ -38,6 +58,8 @@ struct RenderOptions {
     std::vector<OpacityRule> opacity;
     Layers layers;
     std::vector<PictureOutput> outputs;
+    FrameOptions frames;
+    TreeFiles tree;
 };
 
 /// --resolution and --samples within the limits of the algorithm, which is known already.
@@ -49,8 +71,16 @@ struct Drawn {
     std::vector<Counter> counters;
 };
 
-/// Writes all outputs, or none after an error.
-[[nodiscard]] Result<Drawn> draw_outputs(const RenderOptions& options, Shading shading,
-                                         const ScreenScene& screen, Progress& progress);
+/// What to draw.
+struct View {
+    const ScreenScene& screen;
+    Shading shading = Shading::flat;
+    const BspTree* tree = nullptr;  ///< for the algorithm that has one
+};
+
+/// Writes the pictures, all of them or none after an error.
+[[nodiscard]] Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
+                                         std::span<const PictureOutput> pictures,
+                                         Progress& progress);
 
 }  // namespace sightline::cli
