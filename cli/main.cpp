@@ -81,8 +81,10 @@ int main(int argc, char** argv) {
         const Result<int> result = cli::run_program({argv + 1, argv + argc});
         return result ? *result : cli::report(result.error());
     } catch (const std::bad_alloc&) {
-        return cli::report(cli::failure(
-            "not enough memory; choose a smaller --resolution or --samples, or a smaller model"));
+        return cli::report(
+            cli::failure("not enough memory; choose a smaller --resolution or --samples, a smaller "
+                         "model, or, where "
+                         "surfaces cross one another, --algorithm zbuffer"));
     } catch (const std::exception& error) {
         return cli::report(cli::failure("unexpected failure: {}", error.what()));
     }

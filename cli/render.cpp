@@ -197,9 +197,14 @@ Status report(const RenderOptions& options, const std::vector<Row>& rows) {
 void warn_about_translucency(const RenderOptions& options, const Scene& scene, Progress& progress) {
     if (options.common.quiet || !has_translucent_faces(scene)) return;
     if (options.algorithm->open_layers != nullptr) return;
+    const auto* blending = std::ranges::find_if(algorithms(), [](const Algorithm& a) {
+                               return a.open_layers != nullptr;
+                           }).base();
     progress.clear();
-    fmt::print(stderr, "sightline: warning: '{}' can't blend: translucent faces are drawn opaque\n",
-               options.algorithm->name);
+    fmt::print(stderr,
+               "sightline: warning: '{}' can't blend: translucent faces are drawn opaque; take "
+               "--algorithm {}\n",
+               options.algorithm->name, blending->name);
 }
 
 Result<int> run(const Arguments& arguments) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "errors.hpp"
@@ -27,7 +28,7 @@ std::optional<Orbit> parse_orbit(std::string_view text) {
     orbit.axis[static_cast<int>(axis - kAxes.begin())] = 1;
     if (items.size() == 1) return orbit;
     const auto start = parse_number(items[1]), end = parse_number(items[2]);
-    if (!start || !end) return std::nullopt;
+    if (!start || !end || !std::isfinite(*end - *start)) return std::nullopt;
     orbit.start = *start;
     orbit.end = *end;
     return orbit;

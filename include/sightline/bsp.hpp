@@ -62,8 +62,8 @@ struct BspOptions {
 /// Builds the tree of a finished scene; degenerate triangles have no place in it. Quadrics are no
 /// part of it either: tessellate_quadrics().
 ///
-/// O(n log n) for the surfaces of usual models; where surfaces cross one another, every pair that
-/// does adds a piece, so O(n^2) at worst. On all cores.
+/// O(n log n) for the surfaces of usual models; where all surfaces cross one another O(n^2) pieces,
+/// O(n^3) at worst. On all cores.
 /// Errors: bad_option, when `moving` has another size than the triangles; io, when memory runs out.
 [[nodiscard]] Result<BspTree> build_bsp(const Scene& scene, const BspOptions& options = {});
 

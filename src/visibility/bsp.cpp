@@ -13,8 +13,12 @@
 // The tree is of the world and the picture of its snapped image, so this algorithm may differ from
 // the others where two surfaces are closer at a sample than snapping can move them.
 //
+// The walk only notes which parts it meets; their lines on the page are found on all cores.
+//
 // Time O(nodes) for the order, O(rows and samples of all pieces) for painting; memory O(tree).
 #include "visibility/bsp.hpp"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -70,7 +74,7 @@ void for_each_part(const Tree& below, const Tree& top, const NodePair& pair, Ord
     if (pair.below != kNone) a = below.parts_of(pair.below);
     if (pair.top != kNone) b = top.parts_of(pair.top);
     const bool backwards = order == Order::front_to_back;
-    const auto take = [&](std::span<const Part>& from) {
+    const auto take = [&](std::span<const Part>& from) -> const Part& {
         const Part& part = backwards ? from.back() : from.front();
         from = backwards ? from.first(from.size() - 1) : from.subspan(1);
         return part;
@@ -87,21 +91,108 @@ void for_each_part(const Tree& below, const Tree& top, const NodePair& pair, Ord
     }
 }
 
+/// A part that the walk has met.
+struct Met {
+    const Tree* tree;
+    const Part* part;
+    std::uint32_t node;
+};
+
+/// Makes pieces of parts. For one thread.
+class PieceMaker {
+public:
+    PieceMaker(const ScreenScene& screen, const Tree& below, Order order)
+        : screen_(screen),
+          below_(below),
+          surfaces_(screen.scene(), below.grid),
+          rays_(screen, below.grid),
+          order_(order) {}
+
+    /// All that the page has of a triangle: itself, or what clipping made of it. False when there
+    /// is nothing of it.
+    bool add(const Met& met) {
+        const std::size_t before = pieces_.size();
+        const ScreenRange range = screen_triangles(screen_, met.part->triangle);
+        for (std::uint32_t k = range.first; k < range.end; ++k) add_piece(met, k);
+        // They lie beside one another, but an order and its reverse shall be just that.
+        if (order_ == Order::front_to_back)
+            std::reverse(pieces_.begin() + static_cast<std::ptrdiff_t>(before), pieces_.end());
+        return pieces_.size() > before;
+    }
+
+    /// Hands over what was made, behind what is there.
+    void move_to(OrderedPieces& out) {
+        const auto shift = static_cast<std::uint32_t>(out.cuts.size());
+        for (Piece& piece : pieces_) {
+            piece.first_cut += shift;
+            piece.end_cut += shift;
+            out.pieces.push_back(piece);
+        }
+        out.cuts.insert(out.cuts.end(), cuts_.begin(), cuts_.end());
+        pieces_.clear();
+        cuts_.clear();
+    }
+
+    [[nodiscard]] double side_of_viewer(const TreePlane& plane) const {
+        return rays_.side_of_viewer(plane);
+    }
+
+private:
+    void add_piece(const Met& met, std::uint32_t screen_triangle) {
+        Piece piece;
+        piece.triangle = screen_triangle;
+        if (met.part->cut != kNone) {
+            find_cuts(met);
+            // Few cuts are cheaper to ask than to prune.
+            if (page_.size() > kFewCuts && !pruner_.prune(screen_, screen_triangle, page_)) return;
+            piece.first_cut = static_cast<std::uint32_t>(cuts_.size());
+            cuts_.insert(cuts_.end(), page_.begin(), page_.end());
+            piece.end_cut = static_cast<std::uint32_t>(cuts_.size());
+        }
+        pieces_.push_back(piece);
+    }
+
+    // A part on top of the tree may lie in a node whose plane is equal to its own only in effect.
+    void find_cuts(const Met& met) {
+        const Tree& tree = *met.tree;
+        const TreePlane surface =
+            &tree == &below_ ? tree.planes[met.node] : surfaces_.plane(met.part->triangle);
+        constexpr std::int32_t kEverywhere = std::int32_t{1} << kCoordBits;
+        page_.clear();
+        for (CutSide side = met.part->cut; side != kNone; side = tree.cuts[side >> 1].parent) {
+            const glm::dvec3 line = rays_.line(tree.planes[tree.cuts[side >> 1].node], surface);
+            const bool back = (side & 1) != 0;
+            page_.push_back({back ? -line : line, !back, -kEverywhere, kEverywhere});
+        }
+    }
+
+    static constexpr std::size_t kFewCuts = 2;
+
+    const ScreenScene& screen_;
+    const Tree& below_;
+    Surfaces surfaces_;
+    Rays rays_;
+    Order order_;
+    std::vector<Piece> pieces_;
+    std::vector<PageCut> cuts_;
+    std::vector<PageCut> page_;
+    CutPruner pruner_;
+};
+
 /// A walk over a tree and what is on top of it.
 class Walk {
 public:
-    Walk(const ScreenScene& screen, const Tree& below, const Tree& top, Order order,
+    Walk(const ScreenScene& screen, const Tree& below, const Tree& top, Order order, int threads,
          Observer* observer)
-        : screen_(screen),
-          below_(below),
+        : below_(below),
           top_(top),
-          surfaces_(screen.scene(), below.grid),
-          rays_(screen, below.grid),
           order_(order),
-          observer_(observer) {}
+          threads_(threads),
+          observer_(observer),
+          maker_(screen, below, order) {}
 
     [[nodiscard]] OrderedPieces run() {
-        out_.pieces.reserve(below_.parts.size() + top_.parts.size());
+        met_.reserve(below_.parts.size() + top_.parts.size());
         struct Step {
             NodePair pair;
             bool emit;
@@ -117,7 +208,7 @@ public:
                 emit(step.pair, step.viewer);
                 continue;
             }
-            const double viewer = rays_.side_of_viewer(plane_of(step.pair));
+            const double viewer = maker_.side_of_viewer(plane_of(step.pair));
             const bool back_first = (viewer >= 0) == (order_ == Order::back_to_front);
             const NodePair first = child(step.pair, back_first),
                            last = child(step.pair, !back_first);
@@ -125,6 +216,7 @@ public:
             steps.push_back({step.pair, true, viewer});
             if (!first.empty()) steps.push_back({first, false, 0});
         }
+        make_pieces();
         return std::move(out_);
     }
 
@@ -152,67 +244,46 @@ private:
                           out_.moving_parts += &tree == &top_ ? 1 : 0;
                           const bool shows_back = part.reversed != 0 ? viewer > 0 : viewer < 0;
                           out_.back_faces_met += shows_back ? 1 : 0;
-                          add(tree, node, part);
+                          take({&tree, &part, node});
                       });
         if (first) tell(StepKind::node_entered, kNone);
     }
 
-    // All that the page has of a triangle: itself, or what clipping made of it.
-    void add(const Tree& tree, std::uint32_t node, const Part& part) {
-        const std::size_t before = out_.pieces.size();
-        const ScreenRange range = screen_triangles(screen_, part.triangle);
-        for (std::uint32_t k = range.first; k < range.end; ++k) add_piece(tree, node, part, k);
-        // They lie beside one another, but an order and its reverse shall be just that.
-        if (order_ == Order::front_to_back)
-            std::reverse(out_.pieces.begin() + static_cast<std::ptrdiff_t>(before),
-                         out_.pieces.end());
+    // Whoever watches sees each piece when its node is met.
+    void take(const Met& met) {
+        if (observer_ == nullptr)
+            met_.push_back(met);
+        else if (maker_.add(met))
+            tell(StepKind::polygon_painted, met.part->triangle);
     }
 
-    void add_piece(const Tree& tree, std::uint32_t node, const Part& part,
-                   std::uint32_t screen_triangle) {
-        Piece piece;
-        piece.triangle = screen_triangle;
-        if (part.cut != kNone) {
-            find_cuts(tree, node, part);
-            // Few cuts are cheaper to ask than to prune.
-            if (page_.size() > kFewCuts && !pruner_.prune(screen_, screen_triangle, page_)) return;
-            piece.first_cut = static_cast<std::uint32_t>(out_.cuts.size());
-            out_.cuts.insert(out_.cuts.end(), page_.begin(), page_.end());
-            piece.end_cut = static_cast<std::uint32_t>(out_.cuts.size());
+    void make_pieces() {
+        if (observer_ != nullptr) {
+            maker_.move_to(out_);
+            return;
         }
-        out_.pieces.push_back(piece);
-        tell(StepKind::polygon_painted, part.triangle);
-    }
-
-    // A part on top of the tree may lie in a node whose plane is equal to its own only in effect.
-    void find_cuts(const Tree& tree, std::uint32_t node, const Part& part) {
-        const TreePlane surface =
-            &tree == &below_ ? tree.planes[node] : surfaces_.plane(part.triangle);
-        constexpr std::int32_t kEverywhere = std::int32_t{1} << kCoordBits;
-        page_.clear();
-        for (CutSide side = part.cut; side != kNone; side = tree.cuts[side >> 1].parent) {
-            const glm::dvec3 line = rays_.line(tree.planes[tree.cuts[side >> 1].node], surface);
-            const bool back = (side & 1) != 0;
-            page_.push_back({back ? -line : line, !back, -kEverywhere, kEverywhere});
-        }
+        constexpr std::size_t kChunk = 8192;
+        std::vector<PieceMaker> makers((met_.size() + kChunk - 1) / kChunk, maker_);
+        const auto make = [&](std::size_t chunk) {
+            const std::size_t end = std::min(met_.size(), (chunk + 1) * kChunk);
+            for (std::size_t k = chunk * kChunk; k < end; ++k) makers[chunk].add(met_[k]);
+        };
+        in_arena(threads_, [&] { tbb::parallel_for(std::size_t{0}, makers.size(), make); });
+        for (PieceMaker& maker : makers) maker.move_to(out_);
     }
 
     void tell(StepKind kind, std::uint32_t triangle) const {
         if (observer_ != nullptr) observer_->step({kind, triangle});
     }
 
-    static constexpr std::size_t kFewCuts = 2;
-
-    const ScreenScene& screen_;
     const Tree& below_;
     const Tree& top_;
-    Surfaces surfaces_;
-    Rays rays_;
     Order order_;
+    int threads_;
     Observer* observer_;
+    PieceMaker maker_;
+    std::vector<Met> met_;
     OrderedPieces out_;
-    std::vector<PageCut> page_;
-    CutPruner pruner_;
 };
 
 /// What moves and is on the page, on top of the tree.
@@ -232,7 +303,7 @@ OrderedPieces order_pieces(const ScreenScene& screen, const BspTree& tree, Order
                            Observer* observer) {
     const Tree& below = tree.data();
     const Tree top = put_on_top(screen, below, observer != nullptr ? 1 : threads);
-    return Walk(screen, below, top, order, observer).run();
+    return Walk(screen, below, top, order, threads, observer).run();
 }
 
 BspTree tree_for(const ScreenScene& screen, const ResolveOptions& options) {

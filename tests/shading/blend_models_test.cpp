@@ -69,6 +69,9 @@ std::optional<Scene> teapot_through_bunny() {
 }
 
 TEST(BlendModels, TeapotThroughBunny) {
+#ifdef SIGHTLINE_SANITIZED
+    GTEST_SKIP() << "what it runs is run by smaller scenes under the sanitizers";
+#endif
     const std::optional<Scene> scene = teapot_through_bunny();
     if (!scene) GTEST_SKIP() << "no models in " << models_folder() << "; set SIGHTLINE_MODELS";
     const Camera camera = must(make_camera({}, scene->bounds, {480, 360}));

@@ -18,11 +18,11 @@ constexpr Resolution kSmall{56, 48};
 // More scenes where somebody has the time: make test-full.
 std::uint64_t scene_count() {
 #ifdef SIGHTLINE_SANITIZED
-    constexpr std::uint64_t kFull = 10000;
+    constexpr std::uint64_t kFull = 10000, kQuick = 1000;
 #else
-    constexpr std::uint64_t kFull = 100000;
+    constexpr std::uint64_t kFull = 100000, kQuick = 3000;
 #endif
-    return std::getenv("SIGHTLINE_FULL") != nullptr ? kFull : 3000;
+    return std::getenv("SIGHTLINE_FULL") != nullptr ? kFull : kQuick;
 }
 
 std::string describe(std::uint64_t seed, std::string_view algorithm) {

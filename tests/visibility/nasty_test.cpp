@@ -12,7 +12,8 @@ using namespace testing;
 
 // Hundreds of polygons that all cross one another leave a list-priority algorithm half a million
 // pieces: seconds a view. One view of them is in every run, all are in make test-full.
-bool has_time_for(const Algorithm& algorithm, const NastyScene& nasty, bool every_run) {
+bool has_time_for(const Algorithm& algorithm, const NastyScene& nasty,
+                  [[maybe_unused]] bool every_run) {
     if (!nasty.entangled || algorithm.space != Space::list_priority) return true;
 #ifdef SIGHTLINE_SANITIZED
     return false;
