@@ -133,6 +133,9 @@ public:
         cuts_.clear();
     }
 
+    [[nodiscard]] std::size_t piece_count() const { return pieces_.size(); }
+    [[nodiscard]] std::size_t cut_count() const { return cuts_.size(); }
+
     [[nodiscard]] double side_of_viewer(const TreePlane& plane) const {
         return rays_.side_of_viewer(plane);
     }
@@ -193,28 +196,20 @@ public:
 
     [[nodiscard]] OrderedPieces run() {
         met_.reserve(below_.parts.size() + top_.parts.size());
-        struct Step {
+        // In-order: down the side that comes first, then the node, then the other side.
+        struct Open {
             NodePair pair;
-            bool emit;
             double viewer;
         };
-        std::vector<Step> steps;
-        const NodePair root{below_.root(), top_.root()};
-        if (!root.empty()) steps.push_back({root, false, 0});
-        while (!steps.empty()) {
-            const Step step = steps.back();
-            steps.pop_back();
-            if (step.emit) {
-                emit(step.pair, step.viewer);
-                continue;
-            }
-            const double viewer = maker_.side_of_viewer(plane_of(step.pair));
-            const bool back_first = (viewer >= 0) == (order_ == Order::back_to_front);
-            const NodePair first = child(step.pair, back_first),
-                           last = child(step.pair, !back_first);
-            if (!last.empty()) steps.push_back({last, false, 0});
-            steps.push_back({step.pair, true, viewer});
-            if (!first.empty()) steps.push_back({first, false, 0});
+        std::vector<Open> open;
+        NodePair at{below_.root(), top_.root()};
+        while (!at.empty() || !open.empty()) {
+            for (; !at.empty(); at = child(at, goes_back_first(open.back().viewer)))
+                open.push_back({at, maker_.side_of_viewer(plane_of(at))});
+            const Open node = open.back();
+            open.pop_back();
+            emit(node.pair, node.viewer);
+            at = child(node.pair, !goes_back_first(node.viewer));
         }
         make_pieces();
         return std::move(out_);
@@ -223,6 +218,10 @@ public:
 private:
     [[nodiscard]] const TreePlane& plane_of(const NodePair& pair) const {
         return pair.below != kNone ? below_.planes[pair.below] : top_.planes[pair.top];
+    }
+
+    [[nodiscard]] bool goes_back_first(double viewer) const {
+        return (viewer >= 0) == (order_ == Order::back_to_front);
     }
 
     [[nodiscard]] NodePair child(const NodePair& pair, bool back) const {
@@ -269,6 +268,13 @@ private:
             for (std::size_t k = chunk * kChunk; k < end; ++k) makers[chunk].add(met_[k]);
         };
         in_arena(threads_, [&] { tbb::parallel_for(std::size_t{0}, makers.size(), make); });
+        std::size_t pieces = 0, cuts = 0;
+        for (const PieceMaker& maker : makers) {
+            pieces += maker.piece_count();
+            cuts += maker.cut_count();
+        }
+        out_.pieces.reserve(pieces);
+        out_.cuts.reserve(cuts);
         for (PieceMaker& maker : makers) maker.move_to(out_);
     }
 
