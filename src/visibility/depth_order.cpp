@@ -50,6 +50,7 @@ public:
         for (const std::uint32_t face : farthest_first()) {
             roots_.push_back(face);
             while (!roots_.empty() && !is_entangled()) take_root();
+            if (is_entangled()) break;
         }
         if (is_entangled()) divide_the_rest();
     }

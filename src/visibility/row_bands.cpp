@@ -1,5 +1,7 @@
 #include "visibility/row_bands.hpp"
 
+#include "visibility/sample_box.hpp"
+
 namespace sightline {
 
 namespace {
@@ -29,15 +31,8 @@ void RowBands::take_chunk(std::uint32_t chunk, std::uint32_t first, std::uint32_
     reaches.clear();
     for (std::uint32_t k = first; k < end; ++k) {
         if (!screen_.drawable(k)) continue;
-        const Corners c = screen_.corners(k);
-        const ScreenPoint &p = screen_.point(c.x), &q = screen_.point(c.y), &r = screen_.point(c.z);
-        const std::int32_t begin = std::max(0, units_.first_from(std::min({p.y, q.y, r.y})));
-        const std::int32_t last =
-            std::min(units_.rows, units_.first_from(std::max({p.y, q.y, r.y}))) - 1;
-        const std::int32_t left = std::max(0, units_.first_from(std::min({p.x, q.x, r.x})));
-        const std::int32_t right =
-            std::min(units_.columns, units_.first_from(std::max({p.x, q.x, r.x})));
-        if (begin <= last && left < right) reaches.push_back({k, begin, last});
+        const SampleBox box = sample_box(screen_, units_, k);
+        if (!box.empty()) reaches.push_back({k, box.top, box.bottom - 1});
     }
     chunks_[chunk].sort(count_, [&](const auto& visit) {
         for (const Reach& reach : reaches) {
