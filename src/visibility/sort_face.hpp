@@ -10,8 +10,8 @@
 #include <cstdint>
 
 #include "sightline/screen_scene.hpp"
-#include "visibility/box_tree.hpp"
-#include "visibility/convex_region.hpp"
+#include "math/box_tree.hpp"
+#include "math/convex_region.hpp"
 
 namespace sightline {
 

@@ -59,7 +59,7 @@ HWY_INLINE void fill_row(D d, hn::TFromD<D> value, std::size_t n, hn::TFromD<D>*
     std::fill(to + i, to + n, value);
 }
 
-HWY_NOINLINE void write_half_row(TileWriter& writer, PendingRows& rows) {
+inline HWY_NOINLINE void write_half_row(TileWriter& writer, PendingRows& rows) {
     const std::int32_t row = rows.next >> 1;
     const std::size_t at =
         rows.at + static_cast<std::size_t>(row) * static_cast<std::size_t>(writer.columns);
@@ -83,12 +83,12 @@ HWY_INLINE void write_some(TileWriter& writer, int half_rows) {
         if (PendingRows* rows = writer.pending()) write_half_row(writer, *rows);
 }
 
-void write_all(TileWriter& writer) {
+inline void write_all(TileWriter& writer) {
     while (PendingRows* rows = writer.pending()) write_half_row(writer, *rows);
     hwy::FlushStream();
 }
 
-void write_drawn(TileWriter& writer) {
+inline void write_drawn(TileWriter& writer) {
     while (writer.drawn.next != writer.drawn.end) write_half_row(writer, writer.drawn);
 }
 

@@ -1,4 +1,4 @@
-#include "visibility/box_tree.hpp"
+#include "math/box_tree.hpp"
 
 #include <tbb/parallel_sort.h>
 
