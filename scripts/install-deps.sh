@@ -7,11 +7,12 @@
 # docs/dependencies.md says what each package is for.
 set -eu
 
-build_packages='g++ cmake ninja-build
+build_packages='g++ cmake ninja-build pkg-config
     libassimp-dev libglm-dev libtbb-dev libhwy-dev zlib1g-dev libopenexr-dev
+    libcairo2-dev libdxflib-dev
     libboost-dev libcli11-dev libfmt-dev nlohmann-json3-dev'
 test_packages='libgtest-dev libpng-dev libembree-dev clang libclang-rt-14-dev llvm
-    pkg-config ccache'
+    ccache'
 lint_packages='clang-format clang-tidy'
 
 fail() {

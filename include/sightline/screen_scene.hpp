@@ -74,6 +74,9 @@ struct ProjectCounts {
 struct ProjectOptions {
     Cull cull = Cull::automatic;
     int threads = 0;  ///< 0 = all cores
+    /// For drawings: as many steps a pixel as fit, and nothing outside of the picture. See
+    /// page_of().
+    bool page = false;
 };
 
 /// Read-only once made; any number of threads may use it. Refers to its Scene, which must outlive
@@ -89,6 +92,10 @@ public:
     }
     [[nodiscard]] bool drawable(std::uint32_t k) const {
         return k >= scene_->triangle_count() || skip_.empty() || skip_[k] == 0;
+    }
+    /// Whether a triangle of the scene was removed because of the side it shows.
+    [[nodiscard]] bool culled(std::uint32_t id) const {
+        return !skip_.empty() && skip_[id] == kCulledSide;
     }
     /// Indices of the corners of screen triangle k into the snapped points.
     [[nodiscard]] Corners corners(std::uint32_t k) const {
@@ -148,6 +155,7 @@ public:
 
 private:
     friend class Projector;
+    static constexpr std::uint8_t kCulledSide = 2;  // in skip_
 
     const Scene* scene_ = nullptr;
     Camera camera_;

@@ -1,9 +1,10 @@
 // Everything of the library: scene, camera, canonical screen scene, visibility, order, shading,
-// pictures.
+// pictures, drawings.
 #pragma once
 
 #include "sightline/bsp.hpp"           // IWYU pragma: export
 #include "sightline/camera.hpp"        // IWYU pragma: export
+#include "sightline/drawing.hpp"       // IWYU pragma: export
 #include "sightline/error.hpp"         // IWYU pragma: export
 #include "sightline/image.hpp"         // IWYU pragma: export
 #include "sightline/load.hpp"          // IWYU pragma: export
@@ -11,4 +12,5 @@
 #include "sightline/scene.hpp"         // IWYU pragma: export
 #include "sightline/screen_scene.hpp"  // IWYU pragma: export
 #include "sightline/shading.hpp"       // IWYU pragma: export
+#include "sightline/vector.hpp"        // IWYU pragma: export
 #include "sightline/visibility.hpp"    // IWYU pragma: export

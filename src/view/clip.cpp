@@ -89,4 +89,19 @@ void clip_triangle(const ScreenTransform& transform, const std::array<glm::dvec3
     for (const Corner& corner : current) polygon.push_back(transform.snap(corner.point));
 }
 
+std::optional<std::pair<ScreenPoint, ScreenPoint>> clip_line(const ScreenTransform& transform,
+                                                             const glm::dvec3& from,
+                                                             const glm::dvec3& to) {
+    const HomogeneousPoint a = transform.apply(from), b = transform.apply(to);
+    HomogeneousPoint start = a, end = b;
+    for (int plane = 0; plane < kPlanes; ++plane) {
+        const bool start_inside = distance(transform, start, plane) >= 0;
+        const bool end_inside = distance(transform, end, plane) >= 0;
+        if (!start_inside && !end_inside) return std::nullopt;
+        if (!start_inside) start = crossing(transform, a, b, plane);
+        if (!end_inside) end = crossing(transform, a, b, plane);
+    }
+    return std::pair(transform.snap(start), transform.snap(end));
+}
+
 }  // namespace sightline

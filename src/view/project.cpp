@@ -24,8 +24,6 @@ namespace {
 
 constexpr std::size_t kGrain = 16384;  // positions or triangles that a task takes at a time
 
-enum Skip : std::uint8_t { kDraw = 0, kDegenerate, kCulled, kOutsideVolume, kClipped };
-
 template <class Body>
 void parallel_ranges(std::size_t n, const Body& body) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain),
@@ -36,8 +34,9 @@ void parallel_ranges(std::size_t n, const Body& body) {
 
 class Projector {
 public:
-    Projector(const Scene& scene, const Camera& camera, Cull cull, ScreenScene& screen)
-        : screen_(screen), cull_(cull) {
+    Projector(const Scene& scene, const Camera& camera, const ProjectOptions& options,
+              ScreenScene& screen)
+        : screen_(screen), cull_(options.cull) {
         screen_.counts_ = {};
         screen_.skip_.clear();
         screen_.pieces_.clear();
@@ -45,9 +44,11 @@ public:
         screen_.clipped_planes_.clear();
         screen_.scene_ = &scene;
         screen_.camera_ = camera;
-        screen_.subpixel_bits_ = subpixel_bits_for(camera.resolution);
+        screen_.subpixel_bits_ =
+            options.page ? page_bits_for(camera.resolution) : subpixel_bits_for(camera.resolution);
         screen_.counts_.triangles = scene.triangles.size();
         transform_ = make_transform(camera, screen_.subpixel_bits_);
+        if (options.page) transform_.crop();
     }
 
     void run() {
@@ -60,6 +61,14 @@ public:
     }
 
 private:
+    enum Skip : std::uint8_t {
+        kDraw = 0,
+        kDegenerate,
+        kCulled = ScreenScene::kCulledSide,
+        kOutsideVolume,
+        kClipped
+    };
+
     [[nodiscard]] const Scene& scene() const { return *screen_.scene_; }
 
     void snap_positions_of_scene() {
@@ -255,7 +264,7 @@ Status project(const Scene& scene, const Camera& camera, const ProjectOptions& o
     if (camera.resolution.width == 0 || camera.resolution.height == 0 ||
         std::max(camera.resolution.width, camera.resolution.height) > 65536)
         return Error{ErrorKind::bad_option, "--resolution must be 1 to 65536 pixels a side"};
-    Projector projector(scene, camera, options.cull, out);
+    Projector projector(scene, camera, options, out);
     in_arena(options.threads, [&] { projector.run(); });
     return success();
 }

@@ -29,6 +29,19 @@ int subpixel_bits_for(Resolution resolution) {
     return bits;
 }
 
+int page_bits_for(Resolution resolution) {
+    const double side = std::max(resolution.width, resolution.height);
+    int bits = kCoordBits;
+    while (std::ldexp(side, bits) >= (std::int32_t{1} << kCoordBits)) --bits;
+    return bits;
+}
+
+void ScreenTransform::crop() {
+    volume.x_min = volume.y_min = 0;
+    volume.x_max = 2 * cx;
+    volume.y_max = 2 * cy;
+}
+
 ScreenTransform make_transform(const Camera& camera, int subpixel_bits) {
     ScreenTransform t;
     t.perspective = camera.is_perspective();
@@ -56,6 +69,12 @@ ScreenTransform make_transform(const Camera& camera, int subpixel_bits) {
         t.z_offset = -n * t.z_scale;
     }
     set_volume(t, camera);
+    return t;
+}
+
+ScreenTransform page_transform(const ScreenScene& page) {
+    ScreenTransform t = make_transform(page.camera(), page.subpixel_bits());
+    t.crop();
     return t;
 }
 

@@ -43,6 +43,8 @@ struct ScreenTransform {
     [[nodiscard]] double w_of(const HomogeneousPoint& h) const { return perspective ? h.d : 1.0; }
     /// Rounds to the grid. Precondition: inside the volume up to rounding (it is clamped to it).
     [[nodiscard]] ScreenPoint snap(const HomogeneousPoint& h) const;
+    /// Takes the picture itself for the guard band, so that nothing outside of it remains.
+    void crop();
     [[nodiscard]] static double linear(const glm::dvec4& row, const glm::dvec3& p) {
         return ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
     }
@@ -51,6 +53,11 @@ struct ScreenTransform {
 /// Sub-pixel bits for a picture: 8, or fewer where the picture would not fit into kCoordBits.
 [[nodiscard]] int subpixel_bits_for(Resolution resolution);
 
+/// The same for a drawing: as many as fit.
+[[nodiscard]] int page_bits_for(Resolution resolution);
+
 [[nodiscard]] ScreenTransform make_transform(const Camera& camera, int subpixel_bits);
+/// That of a page, see page_of().
+[[nodiscard]] ScreenTransform page_transform(const ScreenScene& page);
 
 }  // namespace sightline

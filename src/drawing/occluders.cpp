@@ -1,0 +1,96 @@
+#include "drawing/occluders.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "math/arena.hpp"
+#include "sightline/visibility.hpp"
+
+namespace sightline {
+namespace {
+
+Occluder make_occluder(const ScreenScene& page, std::uint32_t k) {
+    const Corners c = page.corners(k);
+    Occluder o;
+    o.p = page.point(c.x);
+    o.q = page.point(c.y);
+    o.r = page.point(c.z);
+    o.corners = {c.x, c.y, c.z};
+    o.turned = side(o.p.x, o.p.y, o.q.x, o.q.y, o.r.x, o.r.y) < 0;
+    if (o.turned) {
+        std::swap(o.q, o.r);
+        std::swap(o.corners[1], o.corners[2]);
+    }
+    o.id = page.id(k);
+    o.sheet = page.shared_plane(o.id);
+    o.plane = page.plane(o.id);
+    o.near = std::min({o.p.z, o.q.z, o.r.z});
+    o.far = std::max({o.p.z, o.q.z, o.r.z});
+    if (o.sheet == kNone || o.plane.c == 0) return o;
+    // The plane of a sheet passes by the corners of its members, not exactly through them.
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double z = evaluate_depth(o.plane, o.point(i).x, o.point(i).y);
+        o.near = std::min(o.near, static_cast<std::int32_t>(std::clamp(
+                                      std::floor(z) - 1, 0.0, static_cast<double>(kDepthMax))));
+        o.far = std::max(o.far, static_cast<std::int32_t>(std::clamp(
+                                    std::ceil(z) + 1, 0.0, static_cast<double>(kDepthMax))));
+    }
+    return o;
+}
+
+bool covers_area(const ScreenScene& page, std::uint32_t k) {
+    if (!page.drawable(k)) return false;
+    const Corners c = page.corners(k);
+    const ScreenPoint &p = page.point(c.x), &q = page.point(c.y), &r = page.point(c.z);
+    return side(p.x, p.y, q.x, q.y, r.x, r.y) != 0 && page.plane(page.id(k)).c > 0;
+}
+
+/// Triangles that cover an area, in their order.
+std::vector<std::uint32_t> find_covering(const ScreenScene& page, int threads) {
+    const std::uint32_t n = page.triangle_count();
+    std::vector<std::uint8_t> covers(n);
+    in_arena(threads, [&] {
+        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& range) {
+            for (std::uint32_t k = range.begin(); k != range.end(); ++k)
+                covers[k] = covers_area(page, k) ? 1 : 0;
+        });
+    });
+    std::vector<std::uint32_t> kept;
+    kept.reserve(n);
+    for (std::uint32_t k = 0; k < n; ++k)
+        if (covers[k] != 0) kept.push_back(k);
+    return kept;
+}
+
+}  // namespace
+
+SpaceBox Occluder::extents() const {
+    SpaceBox box;
+    std::tie(box.x0, box.x1) = std::minmax({p.x, q.x, r.x});
+    std::tie(box.y0, box.y1) = std::minmax({p.y, q.y, r.y});
+    box.near = near;
+    box.far = far;
+    return box;
+}
+
+Occluders::Occluders(const ScreenScene& page, TraceMethod method, int threads) {
+    const std::vector<std::uint32_t> kept = find_covering(page, threads);
+    all_.resize(kept.size());
+    std::vector<PageTriangle> triangles(kept.size());
+    in_arena(threads, [&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 4096),
+                          [&](const auto& range) {
+                              for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                                  all_[i] = make_occluder(page, kept[i]);
+                                  triangles[i] = all_[i].triangle();
+                              }
+                          });
+    });
+    if (method == TraceMethod::fast) in_arena(threads, [&] { grid_.emplace(triangles); });
+}
+
+}  // namespace sightline

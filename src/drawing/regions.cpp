@@ -1,0 +1,263 @@
+#include "drawing/regions.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace sightline {
+namespace {
+
+constexpr std::uint32_t kNoHider = kNone;
+
+std::size_t next_of(std::size_t k) { return k == 2 ? 0 : k + 1; }
+std::size_t previous_of(std::size_t k) { return k == 0 ? 2 : k - 1; }
+
+/// Whether a side of one triangle has all of the other one on its outside, or on itself.
+bool separates(const Occluder& f, const Occluder& g) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const ScreenPoint &a = f.point(k), &b = f.point(next_of(k));
+        if (side(a.x, a.y, b.x, b.y, g.p.x, g.p.y) <= 0 &&
+            side(a.x, a.y, b.x, b.y, g.q.x, g.q.y) <= 0 &&
+            side(a.x, a.y, b.x, b.y, g.r.x, g.r.y) <= 0)
+            return true;
+    }
+    return false;
+}
+
+enum class InFront { nowhere, everywhere, partly };
+
+/// Where face g lies in front of face f, as far as the corners of both tell.
+InFront in_front(const Occluder& g, const Occluder& f) {
+    if (g.id == f.id) return InFront::nowhere;
+    const bool wins_ties = g.id < f.id;
+    if (g.sheet != kNone && g.sheet == f.sheet)
+        return wins_ties ? InFront::everywhere : InFront::nowhere;
+    bool all_equal = true;
+    bool in_front = false, behind = false;  // at corners of both, or of one of them
+    for (const Occluder* o : {&f, &g}) {
+        bool some_in_front = false, some_behind = false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int sign = compare_depth(f.plane, g.plane, o->point(k).x, o->point(k).y).sign;
+            some_in_front = some_in_front || sign > 0;
+            some_behind = some_behind || sign < 0;
+        }
+        all_equal = all_equal && !some_in_front && !some_behind;
+        if (o == &f) {
+            in_front = some_in_front;
+            behind = some_behind;
+        } else {
+            in_front = in_front && some_in_front;
+            behind = behind && some_behind;
+        }
+    }
+    if (all_equal) return wins_ties ? InFront::everywhere : InFront::nowhere;
+    if (!in_front) return InFront::nowhere;
+    return behind ? InFront::partly : InFront::everywhere;
+}
+
+ConvexSides sides_of(const Occluder& o) {
+    ConvexSides sides;
+    for (std::size_t k = 0; k < 3; ++k)
+        sides.side[k] = line_through(o.point(k), o.point(next_of(k)));
+    return sides;
+}
+
+/// Side k of a triangle as a stretch of its own line.
+Stretch stretch_of(const Occluder& o, const ConvexSides& sides, std::size_t k) {
+    // Inside all sides are positive: the one before grows where this one begins, the next falls.
+    return {{&sides.side[previous_of(k)], 1, &o.point(k)},
+            {&sides.side[next_of(k)], -1, &o.point(next_of(k))}};
+}
+
+PageBounds joined(const ScreenPoint& p, const ScreenPoint& q) {
+    return {std::min(p.x, q.x), std::max(p.x, q.x), std::min(p.y, q.y), std::max(p.y, q.y)};
+}
+
+bool meet(const PageBounds& a, const PageBounds& b) {
+    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
+}  // namespace
+
+void RegionFinder::collect_hiders(const Occluder& face) {
+    near_.clear();
+    hiders_.clear();
+    occluders_.near_box(face.extents(), face.far, marks_,
+                        [&](std::uint32_t k) { near_.push_back(k); });
+    // The order in which a search finds them must not matter.
+    std::ranges::sort(near_);
+    for (const std::uint32_t k : near_) {
+        const Occluder& other = occluders_[k];
+        if (separates(face, other) || separates(other, face)) continue;
+        const InFront where = in_front(other, face);
+        if (where == InFront::nowhere) continue;
+        Hider hider{k, where == InFront::everywhere, sides_of(other), other.extents()};
+        if (!hider.whole) {
+            hider.sides.side[3] = line_where_deeper(face.plane, other.plane);
+            hider.sides.count = 4;
+        }
+        hiders_.push_back(hider);
+    }
+    order_.resize(hiders_.size());
+    for (std::uint32_t h = 0; h < order_.size(); ++h) order_[h] = h;
+    std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(hiders_[a].bounds.x0, a) < std::tie(hiders_[b].bounds.x0, b);
+    });
+}
+
+// Sides of the face itself border what is visible on their own account.
+void RegionFinder::collect_candidates(const Occluder& face) {
+    candidates_.clear();
+    const auto is_own = [&](std::uint32_t a, std::uint32_t b) {
+        return std::ranges::find(face.corners, a) != face.corners.end() &&
+               std::ranges::find(face.corners, b) != face.corners.end();
+    };
+    for (std::uint32_t h = 0; h < hiders_.size(); ++h) {
+        const Occluder& o = occluders_[hiders_[h].occluder];
+        for (std::uint32_t k = 0; k < hiders_[h].sides.count; ++k) {
+            if (k == 3) {
+                candidates_.push_back({kNone, kNone, h, k, true});
+                continue;
+            }
+            const std::uint32_t a = o.corners[k], b = o.corners[next_of(k)];
+            if (!is_own(a, b)) candidates_.push_back({std::min(a, b), std::max(a, b), h, k, a < b});
+        }
+    }
+}
+
+// Two hiders that lie on both sides of a common edge, each as a whole, leave nothing to be seen
+// along it.
+void RegionFinder::drop_seams() {
+    const auto key = [](const Candidate& c) { return std::tie(c.low, c.high); };
+    std::ranges::sort(candidates_, [&](const Candidate& c, const Candidate& d) {
+        return key(c) != key(d) ? key(c) < key(d)
+                                : std::tie(c.hider, c.side) < std::tie(d.hider, d.side);
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0, end = 0; i < candidates_.size(); i = end) {
+        bool forward = false, backward = false;
+        for (; end < candidates_.size() && key(candidates_[end]) == key(candidates_[i]); ++end) {
+            const Candidate& c = candidates_[end];
+            if (c.low == kNone || !hiders_[c.hider].whole) continue;
+            (c.forward ? forward : backward) = true;
+        }
+        if (forward && backward) continue;
+        for (std::size_t c = i; c < end; ++c) candidates_[kept++] = candidates_[c];
+    }
+    candidates_.resize(kept);
+}
+
+void RegionFinder::cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
+                         std::uint32_t h, std::uint32_t skip) {
+    const ConvexSides& sides = hiders_[h].sides;
+    if (const auto covered = inside(carrier, beside, stretch, sides)) covers_.push_back(*covered);
+    // Where several hiders end along one line, the first of them has the border.
+    if (skip == kNoHider || h > skip) return;
+    for (const PageLine& side : sides.all()) {
+        if (growth(carrier, side) != 0 || sign_of_parallel(carrier, *stretch.from.line, side) != 0)
+            continue;
+        if (const auto same = inside(carrier, CarrierSide::right, stretch, sides))
+            covers_.push_back(*same);
+        return;
+    }
+}
+
+/// Leaves in left_ what no hider but `skip` covers.
+void RegionFinder::subtract_hiders(const PageLine& carrier, CarrierSide beside,
+                                   const Stretch& stretch, const PageBounds& bounds,
+                                   std::uint32_t skip) {
+    covers_.clear();
+    left_.clear();
+    for (const std::uint32_t h : order_) {
+        if (hiders_[h].bounds.x0 > bounds.x1) break;
+        if (h != skip && meet(hiders_[h].bounds, bounds)) cover(carrier, beside, stretch, h, skip);
+    }
+    std::ranges::sort(covers_, [&](const Stretch& a, const Stretch& b) {
+        return compare(carrier, a.from, b.from) < 0;
+    });
+    Place at = stretch.from;
+    for (const Stretch& covered : covers_) {
+        if (compare(carrier, at, covered.from) < 0) left_.push_back({at, covered.from});
+        if (compare(carrier, at, covered.to) < 0) at = covered.to;
+    }
+    if (compare(carrier, at, stretch.to) < 0) left_.push_back({at, stretch.to});
+}
+
+BorderPiece RegionFinder::piece(const PageLine& carrier, const Stretch& stretch,
+                                bool reversed) const {
+    BorderPiece piece;
+    const auto place = [&](const Place& p, glm::ivec2& rounded, glm::dvec2& exact) {
+        if (p.corner != nullptr) {
+            rounded = {p.corner->x, p.corner->y};
+            exact = glm::dvec2(rounded);
+        } else {
+            rounded = rounded_crossing_of(carrier, *p.line);
+            exact = crossing_of(carrier, *p.line);
+        }
+    };
+    place(reversed ? stretch.to : stretch.from, piece.from, piece.exact_from);
+    place(reversed ? stretch.from : stretch.to, piece.to, piece.exact_to);
+    return piece;
+}
+
+// True when the side enters the face.
+bool RegionFinder::try_candidate(const Candidate& c, std::vector<BorderPiece>& border) {
+    const Hider& hider = hiders_[c.hider];
+    const Occluder& o = occluders_[hider.occluder];
+    const PageLine& carrier = hider.sides.side[c.side];
+    PageBounds bounds = hider.bounds;
+    std::optional<Stretch> stretch;
+    if (c.side < 3) {
+        bounds = joined(o.point(c.side), o.point(next_of(c.side)));
+        if (!meet(bounds, face_->extents())) return false;
+        stretch = stretch_of(o, hider.sides, c.side);
+        if (!hider.whole) stretch = inside(carrier, CarrierSide::right, *stretch, hider.sides);
+    } else {
+        // The line of intersection, as far as it lies in the hider: it enters and leaves by sides.
+        stretch = chord(carrier, std::span<const PageLine, 3>(hider.sides.side.data(), 3));
+    }
+    if (!stretch) return false;
+    // Beside the hider, but not along a side of the face, which is its own border.
+    for (const PageLine& side : own_.all())
+        if (growth(carrier, side) == 0 && sign_of_parallel(carrier, *stretch->from.line, side) == 0)
+            return false;
+    stretch = inside(carrier, CarrierSide::left, *stretch, own_);
+    if (!stretch) return false;
+    subtract_hiders(carrier, CarrierSide::left, *stretch, bounds, c.hider);
+    for (const Stretch& left : left_) border.push_back(piece(carrier, left, true));
+    return true;
+}
+
+void RegionFinder::add_own_sides(const Occluder& face, std::vector<BorderPiece>& border) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const PageLine& carrier = own_.side[k];
+        subtract_hiders(carrier, CarrierSide::right, stretch_of(face, own_, k),
+                        joined(face.point(k), face.point(next_of(k))), kNoHider);
+        for (const Stretch& left : left_) border.push_back(piece(carrier, left, false));
+    }
+}
+
+FaceFate RegionFinder::find(std::uint32_t k, std::vector<BorderPiece>& border) {
+    const Occluder& face = occluders_[k];
+    face_ = &face;
+    collect_hiders(face);
+    own_ = sides_of(face);
+    const std::size_t before = border.size();
+    if (hiders_.empty()) {
+        for (std::size_t s = 0; s < 3; ++s)
+            border.push_back(piece(own_.side[s], stretch_of(face, own_, s), false));
+        return FaceFate::whole;
+    }
+    collect_candidates(face);
+    if (method_ == TraceMethod::fast) drop_seams();
+    bool entered = false;
+    for (const Candidate& candidate : candidates_)
+        entered = try_candidate(candidate, border) || entered;
+    // A hider without a border in the face covers all of it.
+    const bool covered =
+        method_ == TraceMethod::fast && !entered &&
+        std::ranges::any_of(hiders_, [](const Hider& hider) { return hider.whole; });
+    if (!covered) add_own_sides(face, border);
+    return border.size() == before ? FaceFate::hidden : FaceFate::partly;
+}
+
+}  // namespace sightline

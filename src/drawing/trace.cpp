@@ -1,0 +1,53 @@
+// From a page to a drawing.
+#include <cassert>
+#include <cmath>
+
+#include "drawing/faces.hpp"
+#include "drawing/lines.hpp"
+
+namespace sightline {
+namespace {
+
+Error stopped() { return {ErrorKind::cancelled, "the drawing was stopped before it was done"}; }
+
+}  // namespace
+
+Result<Drawing> trace(const ScreenScene& page, const TraceOptions& options) {
+    assert(page.scene().quadrics.empty());
+    Drawing drawing;
+    drawing.resolution = page.resolution();
+    const Occluders occluders(page, options.method, options.threads);
+    WorkMeter meter(options.progress);
+    PageEdges edges;
+    if (!options.edges.empty()) edges = collect_edges(page, occluders, options, meter);
+    const bool fills = options.fill != FillStyle::none;
+    meter.expect(edges.edges.size() + (fills ? occluders.size() : 0));
+    const HiddenParts parts = find_hidden_parts(page, occluders, edges, options.threads, meter);
+    if (meter.stopped()) return stopped();
+    append_lines(page, edges, parts, options.hidden, drawing);
+    drawing.counts.edges = edges.edges.size();
+    drawing.counts.intersections = edges.crossings;
+    drawing.counts.occluder_tests = parts.tests;
+    if (fills) append_regions(page, occluders, options, meter, drawing);
+    meter.finish();
+    if (meter.stopped()) return stopped();
+    return drawing;
+}
+
+Result<std::vector<FaceArea>> visible_areas(const ScreenScene& page, const TraceOptions& options) {
+    assert(page.scene().quadrics.empty());
+    const Occluders occluders(page, options.method, options.threads);
+    WorkMeter meter(options.progress);
+    meter.expect(occluders.size());
+    std::vector<FaceArea> areas = find_areas(page, occluders, options, meter);
+    meter.finish();
+    if (meter.stopped()) return stopped();
+    const double scale = std::ldexp(1.0, -2 * page.subpixel_bits());
+    for (FaceArea& area : areas) {
+        area.projected *= scale;
+        area.visible *= scale;
+    }
+    return areas;
+}
+
+}  // namespace sightline

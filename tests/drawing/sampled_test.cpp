@@ -1,0 +1,246 @@
+// Regions against the definition: in any point of the page, the region that holds it is that of the
+// polygon that the canonical answer names.
+#include "drawing/sampled.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "drawing/pages.hpp"
+#include "support/models.hpp"
+#include "support/nasty.hpp"
+
+namespace sightline {
+namespace {
+
+using namespace testing;
+
+bool is_full() { return std::getenv("SIGHTLINE_FULL") != nullptr; }
+
+struct Score {
+    std::uint64_t samples = 0, covered = 0, skipped = 0, wrong = 0;
+    std::uint64_t slivers = 0;  ///< wrong, and within two units of what is thinner than a region is
+    std::string first;
+
+    void expect_good(const std::string& what) const {
+        std::cout << what << ": " << samples << " samples, " << covered << " covered, " << skipped
+                  << " on edges, " << slivers << " in slivers\n";
+        EXPECT_EQ(wrong, 0u) << what << ": " << first;
+        EXPECT_LT(slivers, 10 + samples / 500) << what;
+        EXPECT_LT(skipped, samples / 2) << what;
+    }
+};
+
+TraceOptions regions_only() {
+    TraceOptions options;
+    options.edges = {};
+    options.fill = FillStyle::flat;
+    return options;
+}
+
+/// Anywhere, and half of them beside a corner of a region, where mistakes would be.
+glm::ivec2 sample_of(const ScreenScene& page, const Drawing& drawing, Random& random) {
+    const int bits = page.subpixel_bits();
+    const std::uint32_t width = page.resolution().width << bits;
+    const std::uint32_t height = page.resolution().height << bits;
+    glm::ivec2 p(random.below(width), random.below(height));
+    if (drawing.regions.points.empty() || random.chance(0.5)) return p;
+    const auto n = static_cast<std::uint32_t>(drawing.regions.points.size());
+    const double reach = std::pow(10.0, random.uniform(0.5, 4));
+    p = glm::ivec2(std::ldexp(1.0, bits) * drawing.regions.points[random.below(n)]) +
+        glm::ivec2(random.uniform(-reach, reach), random.uniform(-reach, reach));
+    return glm::clamp(p, glm::ivec2(0), glm::ivec2(width - 1, height - 1));
+}
+
+void judge(const ScreenScene& page, const Drawing& drawing, std::uint64_t seed, int samples,
+           Score& score) {
+    const CanonicalAnswer canonical(page);
+    const RegionAnswer regions(drawing, page.subpixel_bits());
+    Random random(seed);
+    for (int k = 0; k < samples; ++k) {
+        const glm::ivec2 p = sample_of(page, drawing, random);
+        const auto at = regions.at(glm::dvec2(p), 1.0);
+        ++score.samples;
+        if (at.distance <= 1) {
+            ++score.skipped;
+            continue;
+        }
+        const std::uint32_t expected = canonical.polygon_at(p.x, p.y);
+        score.covered += expected != kNone;
+        const bool right = expected == kNone
+                               ? at.polygons.empty()
+                               : at.polygons.size() == 1 && at.polygons[0] == expected;
+        if (right) continue;
+        if (canonical.near_border(p.x, p.y)) {
+            ++score.slivers;
+            continue;
+        }
+        if (score.wrong++ == 0)
+            score.first = "seed " + std::to_string(seed) + " at " + std::to_string(p.x) + ", " +
+                          std::to_string(p.y) + ": polygon " +
+                          std::to_string(static_cast<int>(expected)) + ", the drawing has " +
+                          std::to_string(at.polygons.size()) + " regions there, first " +
+                          std::to_string(at.polygons.empty() ? -1 : int(at.polygons[0]));
+    }
+}
+
+TEST(SampledRegions, AreThoseOfTheDefinitionOnHostileScenes) {
+    Score score;
+    for (std::uint64_t seed = 0; seed < (is_full() ? 3000u : 300u); ++seed) {
+        const Scene scene = hostile_scene(seed);
+        const Camera camera = hostile_camera(scene, seed, {200, 150});
+        const ScreenScene screen =
+            page(scene, camera, seed % 4 == 0 ? Cull::automatic : Cull::none);
+        judge(screen, must(trace(screen, regions_only())), seed, 200, score);
+    }
+    score.expect_good("hostile scenes");
+    EXPECT_GT(score.covered, score.samples / 4);
+}
+
+TEST(SampledRegions, AreThoseOfTheDefinitionOnNastyScenes) {
+    for (const NastyScene& nasty : nasty_scenes()) {
+        // Where every face is before and behind every other one, time grows as their third power.
+        const bool slow = nasty.entangled || nasty.name == "bundle of needles";
+        const Scene scene = beginning(nasty.scene, !slow ? 10000 : is_full() ? 250 : 80);
+        Score score;
+        const ScreenScene screen = page(scene, page_camera(scene, {64, 64}));
+        judge(screen, must(trace(screen, regions_only())), 1, 2000, score);
+        score.expect_good(std::string(nasty.name));
+    }
+}
+
+// Points spread evenly over the sphere (a Fibonacci lattice).
+glm::dvec3 direction(int k, int count) {
+    const double golden = std::acos(-1.0) * (3 - std::sqrt(5.0));
+    const double y = 1 - 2 * (k + 0.5) / count, r = std::sqrt(1 - y * y);
+    return {r * std::cos(golden * k), y, r * std::sin(golden * k)};
+}
+
+Camera view_of(const Scene& scene, int k, int count, Resolution size) {
+    CameraOptions options;
+    options.direction = direction(k, count);
+    options.projection = k % 2 == 0 ? Projection::perspective : Projection::orthographic;
+    return must(make_camera(options, scene.bounds, size));
+}
+
+void expect_definition(const Scene& scene, const std::string& name) {
+    const int views = is_full() ? 20 : 3;
+    Score score;
+    for (int k = 0; k < views; ++k) {
+        const ScreenScene screen =
+            page(scene, view_of(scene, k, views, {320, 240}), Cull::automatic);
+        judge(screen, must(trace(screen, regions_only())), static_cast<std::uint64_t>(k),
+              is_full() ? 10000 : 3000, score);
+    }
+    score.expect_good(name);
+    EXPECT_GT(score.covered, score.samples / 5);
+}
+
+// What snapping to the coarser grid of a picture can move a depth, in its units.
+double snapping_bound(const Plane& p) {
+    const auto c = static_cast<double>(p.c);
+    return 0.5 +
+           0.5 * (std::abs(static_cast<double>(p.a)) + std::abs(static_cast<double>(p.b))) / c;
+}
+
+/// Of samples farther than 1/256 pixel from all edges of regions.
+struct PictureScore {
+    std::uint64_t samples = 0, covered = 0, close_depths = 0, wrong = 0;
+    std::string first;
+};
+
+bool is_close(const ScreenScene& picture, std::uint32_t a, std::uint32_t b, std::int32_t x,
+              std::int32_t y) {
+    if (a == kNone || b == kNone) return false;
+    const Plane p = picture.plane(a), q = picture.plane(b);
+    return std::abs(evaluate_depth(p, x, y) - evaluate_depth(q, x, y)) <=
+           snapping_bound(p) + snapping_bound(q);
+}
+
+void compare_to_picture(const Scene& scene, const Camera& camera, PictureScore& score) {
+    const ScreenScene screen = page(scene, camera), picture = must(project(scene, camera));
+    const RegionAnswer regions(must(trace(screen, regions_only())), screen.subpixel_bits());
+    const CanonicalAnswer canonical(screen);
+    const Visibility seen = run("zbuffer", picture);
+    const double unit = std::ldexp(1.0, screen.subpixel_bits()), apart = unit / 256;
+    const Resolution size = camera.resolution;
+    for (std::uint32_t j = 0; j < size.height; ++j)
+        for (std::uint32_t i = 0; i < size.width; ++i) {
+            const glm::dvec2 centre = unit * glm::dvec2(i + 0.5, j + 0.5);
+            const auto at = regions.at(centre, apart);
+            if (at.distance <= apart) continue;
+            const std::uint32_t id = seen.ids[std::size_t{j} * size.width + i];
+            ++score.samples;
+            score.covered += id != kNone;
+            if (id == kNone
+                    ? at.polygons.empty()
+                    : at.polygons.size() == 1 && at.polygons[0] == scene.triangle_polygon[id])
+                continue;
+            const std::uint32_t exact = canonical.at(static_cast<std::int32_t>(centre.x),
+                                                     static_cast<std::int32_t>(centre.y));
+            if (is_close(picture, id, exact, static_cast<std::int32_t>(256 * i + 128),
+                         static_cast<std::int32_t>(256 * j + 128))) {
+                ++score.close_depths;
+                continue;
+            }
+            if (score.wrong++ == 0)
+                score.first = "pixel " + std::to_string(i) + ", " + std::to_string(j) +
+                              ": triangle " + std::to_string(static_cast<int>(id)) +
+                              " in the picture, " + std::to_string(static_cast<int>(exact)) +
+                              " on the page";
+        }
+}
+
+void expect_picture(const Scene& scene, const std::string& name) {
+    PictureScore score;
+    const int views = is_full() ? 20 : 2;
+    const Resolution size = is_full() ? Resolution{320, 240} : Resolution{120, 90};
+    for (int k = 0; k < views; ++k)
+        compare_to_picture(scene, view_of(scene, k, views, size), score);
+    std::cout << name << ": " << score.samples << " pixels, " << score.covered << " covered, "
+              << score.close_depths << " differ where depths are closer than snapping moves them\n";
+    EXPECT_GT(score.covered, score.samples / 20) << name;
+    EXPECT_LT(score.close_depths, score.samples / 1000) << name;
+    EXPECT_EQ(score.wrong, 0u) << name << ": " << score.first;
+}
+
+TEST(SampledRegions, AreThoseOfTheDefinitionOnASphere) {
+    expect_definition(sphere_scene(40, 60), "sphere");
+}
+
+TEST(SampledRegions, AgreeWithPicturesOfASphere) { expect_picture(sphere_scene(40, 60), "sphere"); }
+
+TEST(SampledRegions, AgreeWithPicturesOfHostileScenes) {
+    PictureScore score;
+    for (std::uint64_t seed = 0; seed < (is_full() ? 1000u : 40u); ++seed) {
+        const Scene scene = hostile_scene(seed);
+        const Camera camera = hostile_camera(scene, seed, {60, 50});
+        compare_to_picture(scene, camera, score);
+        ASSERT_EQ(score.wrong, 0u) << "seed " << seed << ", " << score.first;
+    }
+    std::cout << "hostile scenes: " << score.samples << " pixels, " << score.close_depths
+              << " differ where depths are closer than snapping moves them\n";
+    EXPECT_LT(score.close_depths, score.samples / 50);
+}
+
+class RegionsOfModel : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        if (std::string(GetParam()).starts_with("stanford") && !is_full())
+            GTEST_SKIP() << "the bunny takes long: SIGHTLINE_FULL";
+        scene_ = real_model(GetParam());
+        if (!scene_)
+            GTEST_SKIP() << models_folder() / GetParam() << " is not there; set SIGHTLINE_MODELS";
+    }
+    std::optional<Scene> scene_;
+};
+
+TEST_P(RegionsOfModel, AreThoseOfTheDefinition) { expect_definition(*scene_, GetParam()); }
+TEST_P(RegionsOfModel, AgreeWithPictures) { expect_picture(*scene_, GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(All, RegionsOfModel,
+                         ::testing::Values("cow.obj", "fandisk.obj", "teapot.obj",
+                                           "stanford-bunny.obj"));
+
+}  // namespace
+}  // namespace sightline
