@@ -31,8 +31,9 @@ demo: build
 
 gallery: build
 	scripts/run-readme.sh docs/gallery
+	scripts/run-readme.sh docs/drawings docs/drawings.md
 	scripts/draw-algorithms.sh docs/algorithms
-	echo 'The pictures of docs/gallery/ and docs/algorithms/ are new.'
+	echo 'The pictures of docs/gallery/, docs/drawings/ and docs/algorithms/ are new.'
 
 test:
 	scripts/test.sh

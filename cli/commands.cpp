@@ -9,11 +9,12 @@
 namespace sightline::cli {
 namespace {
 
-constexpr std::array<const Command*, 5> kCommands = {&kRender, &kInfo, &kAlgorithms, &kCompare,
-                                                     &kBench};
+constexpr std::array<const Command*, 7> kCommands = {&kRender,     &kDraw,    &kVisible, &kInfo,
+                                                     &kAlgorithms, &kCompare, &kBench};
 
 constexpr std::array kProgramExamples = {
     Example{"sightline render bunny.obj -o bunny.png", "a picture with the whole model in view"},
+    Example{"sightline draw bunny.obj -o bunny.svg", "an exact drawing of what can be seen"},
     Example{"sightline info bunny.obj", "what is in the file"},
     Example{"sightline render --help", "everything that a command can do"},
 };

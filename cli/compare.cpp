@@ -45,7 +45,7 @@ Result<CompareOptions> read_options(const Arguments& arguments) {
     options.resolution = read_resolution(reader, Resolution{});
     options.cull = read_cull(reader, Cull::automatic);
     options.named = reader.algorithms("--algorithms");
-    options.difference = read_output(reader, "--difference", kDifferenceFormats);
+    options.difference = read_output<ImageFormat>(reader, "--difference", kDifferenceFormats);
     if (options.difference) check_outputs(reader, {&*options.difference, 1}, options.models.paths);
     if (options.difference && options.difference->path == "-") {
         reader.fail(wrong_use("--difference: standard output holds the table; name a file"));

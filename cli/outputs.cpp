@@ -31,9 +31,24 @@ std::string_view name_of(ImageFormat format) {
     return "";
 }
 
-std::string list_of(std::span<const ImageFormat> formats) {
+// What the two kinds of formats are called.
+void parse_format(std::string_view name, std::optional<ImageFormat>& format) {
+    format = parse_image_format(name);
+}
+void parse_format(std::string_view name, std::optional<VectorFormat>& format) {
+    format = parse_vector_format(name);
+}
+void find_format(std::string_view path, std::optional<ImageFormat>& format) {
+    format = image_format_of(path);
+}
+void find_format(std::string_view path, std::optional<VectorFormat>& format) {
+    format = vector_format_of(path);
+}
+
+template <class Format>
+std::string list_of(std::span<const Format> formats) {
     std::vector<std::string_view> names;
-    for (const ImageFormat format : formats) names.push_back(name_of(format));
+    for (const Format format : formats) names.push_back(name_of(format));
     return join(names);
 }
 
@@ -54,7 +69,7 @@ bool is_device(const std::string& path) {
     return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-std::optional<Error> check_place(const Output& output) {
+std::optional<Error> check_place(const OutputPlace& output) {
     if (output.path == "-") return std::nullopt;
     std::error_code ignored;
     const fs::path path(output.path), folder = folder_of(path);
@@ -109,25 +124,26 @@ TemporaryFile::~TemporaryFile() {
     forget_file(ticket_);
 }
 
-std::optional<Output> read_output(OptionReader& reader, std::string_view option,
-                                  std::span<const ImageFormat> allowed) {
+template <class Format>
+std::optional<OutputOf<Format>> read_output(OptionReader& reader, std::string_view option,
+                                            std::span<const Format> allowed) {
     const Arguments& arguments = reader.arguments();
     const auto path = arguments.value(option);
     if (!path) return std::nullopt;
     const std::string_view shown = option == "--output" ? "-o" : option;
     const auto wanted = arguments.value("--output-format");
-    std::optional<ImageFormat> format;
+    std::optional<Format> format;
     if (path->empty()) {
         reader.fail(wrong_use("{}: the name of the file is empty", shown));
         return std::nullopt;
     }
     if (wanted && (*path == "-" || option == "--output")) {
-        format = parse_image_format(*wanted);
+        parse_format(*wanted, format);
     } else if (*path == "-") {
         reader.fail(wrong_use("{} - needs --output-format ({})", shown, list_of(allowed)));
         return std::nullopt;
     } else {
-        format = image_format_of(*path);
+        find_format(*path, format);
     }
     if (!format || std::find(allowed.begin(), allowed.end(), *format) == allowed.end()) {
         const bool by_option = wanted && (*path == "-" || option == "--output");
@@ -138,7 +154,25 @@ std::optional<Output> read_output(OptionReader& reader, std::string_view option,
                                           shown, *path, list_of(allowed)));
         return std::nullopt;
     }
-    return Output{std::string(shown), *path, *format};
+    return OutputOf<Format>{{std::string(shown), *path}, *format};
+}
+
+template std::optional<Output> read_output(OptionReader&, std::string_view,
+                                           std::span<const ImageFormat>);
+template std::optional<VectorOutput> read_output(OptionReader&, std::string_view,
+                                                 std::span<const VectorFormat>);
+
+void check_output(OptionReader& reader, const OutputPlace& output,
+                  std::span<const std::string> inputs) {
+    const bool to_stream = output.path == "-" || is_device(output.path);
+    for (const std::string& input : inputs) {
+        if (to_stream || input == "-" || identity(input) != identity(output.path)) continue;
+        reader.fail(
+            wrong_use("{}: '{}' is an input, which would be overwritten; choose another "
+                      "name",
+                      output.option, output.path));
+    }
+    if (auto error = check_place(output)) reader.fail(std::move(*error));
 }
 
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,
@@ -157,14 +191,7 @@ void check_outputs(OptionReader& reader, std::span<const Output> outputs,
                               outputs[j].option, output.option, output.path));
             }
         }
-        for (const std::string& input : inputs) {
-            if (to_stream || input == "-" || identity(input) != identity(output.path)) continue;
-            reader.fail(
-                wrong_use("{}: '{}' is an input, which would be overwritten; choose another "
-                          "name",
-                          output.option, output.path));
-        }
-        if (auto error = check_place(output)) reader.fail(std::move(*error));
+        check_output(reader, output, inputs);
     }
 }
 

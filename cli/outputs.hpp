@@ -11,21 +11,35 @@
 
 #include "options.hpp"
 #include "sightline/image.hpp"
+#include "sightline/vector.hpp"
 
 namespace sightline::cli {
 
-struct Output {
+/// Where a file goes, whatever is in it.
+struct OutputPlace {
     std::string option;  ///< "--depth", for messages
     std::string path;    ///< "-" is standard output
-    ImageFormat format = ImageFormat::png;
 };
 
-/// An option that names an output; its format follows the extension, or --output-format for "-".
-std::optional<Output> read_output(OptionReader& reader, std::string_view option,
-                                  std::span<const ImageFormat> allowed);
+/// Format: ImageFormat or VectorFormat.
+template <class Format>
+struct OutputOf : OutputPlace {
+    Format format = Format::png;
+};
+using Output = OutputOf<ImageFormat>;
+using VectorOutput = OutputOf<VectorFormat>;
 
-/// Two outputs in one place, an output that is an input, a missing folder, a folder without
-/// permission: reported before any work.
+/// An option that names an output; its format follows the extension, or --output-format for "-".
+template <class Format>
+std::optional<OutputOf<Format>> read_output(OptionReader& reader, std::string_view option,
+                                            std::span<const Format> allowed);
+
+/// An output that is an input, a missing folder, a folder without permission: reported before any
+/// work.
+void check_output(OptionReader& reader, const OutputPlace& output,
+                  std::span<const std::string> inputs);
+
+/// check_output() for each, and two outputs in one place.
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,
                    std::span<const std::string> inputs);
 

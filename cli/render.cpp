@@ -57,7 +57,7 @@ void read_layers(OptionReader& reader, RenderOptions& options) {
 void read_outputs(OptionReader& reader, RenderOptions& options) {
     std::vector<Output> outputs;
     const auto read = [&](PictureContent content, std::string_view option, auto formats) {
-        auto output = read_output(reader, option, formats);
+        auto output = read_output<ImageFormat>(reader, option, formats);
         if (!output) return;
         outputs.push_back(*output);
         options.outputs.push_back({content, std::move(*output)});

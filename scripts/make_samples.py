@@ -356,6 +356,23 @@ def crossing():
             "crossing.mtl": materials("Colours of crossing.obj.", colors)}
 
 
+def tee():
+    """A pipe with a thinner one through it, each closed: their surfaces cross."""
+    mesh = Mesh()
+
+    def ring(radius, steps):
+        return [(radius * math.cos(TAU * k / steps), radius * math.sin(TAU * k / steps))
+                for k in range(steps)]
+
+    mesh.begin("pipe", "steel")
+    mesh.prism(ring(1.0, 64), lambda u, v, w: (v, w, u), -2.0, 2.0)
+    mesh.begin("branch", "brass")
+    mesh.prism(ring(0.6, 48), lambda u, v, w: (w, u, v), -2.2, 2.2)
+    colors = {"steel": (0.56, 0.62, 0.7), "brass": (0.83, 0.66, 0.3)}
+    return {"tee.obj": mesh.obj("Two pipes that cross.", "tee.mtl"),
+            "tee.mtl": materials("Colours of tee.obj.", colors)}
+
+
 def decal():
     """A wall with a poster and a sign that lie exactly in its plane. The lower id wins a tie, so
     the decals come before the wall. Not closed."""
@@ -510,7 +527,7 @@ def main():
     default = pathlib.Path(__file__).resolve().parent.parent / "samples"
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (knot, bracket, house, pawn, chess, crossing, decal, terrain, staircase):
+    for make in (knot, bracket, house, pawn, chess, crossing, tee, decal, terrain, staircase):
         for name, content in make().items():
             (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
 

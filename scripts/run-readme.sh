@@ -1,12 +1,13 @@
 #!/bin/sh
-# Runs every command of README.md that begins with `sightline`, as it is written, and leaves the
-# pictures in a folder: so what the README shows is true.
+# Runs every command of a document that begins with `sightline`, as it is written, and leaves the
+# pictures and drawings in a folder: so what the document shows is true.
 #
-#   scripts/run-readme.sh FOLDER
+#   scripts/run-readme.sh FOLDER [DOCUMENT]      (default: README.md)
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
-folder=${1:?usage: scripts/run-readme.sh FOLDER}
+folder=${1:?usage: scripts/run-readme.sh FOLDER [DOCUMENT]}
+document=${2:-README.md}
 mkdir -p "$folder"
 
 # The commands name samples/ and write beside it, so they run in a folder that shows only that.
@@ -17,7 +18,7 @@ PATH=$root/build/release/bin:$PATH
 export PATH
 
 # A backslash at the end of a line continues it: `read` without -r joins such lines.
-sed -n '/^```sh$/,/^```$/p' README.md >"$work/blocks"
+sed -n '/^```sh$/,/^```$/p' "$document" >"$work/blocks"
 while read command; do
     case $command in
         'sightline '*)
@@ -31,5 +32,5 @@ while read command; do
             ;;
     esac
 done <"$work/blocks"
-rm -f "$folder"/*.png
-cp "$work"/*.png "$folder"
+rm -f "$folder"/*.png "$folder"/*.svg
+find "$work" -maxdepth 1 '(' -name '*.png' -o -name '*.svg' ')' -exec cp '{}' "$folder" ';'

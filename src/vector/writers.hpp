@@ -14,8 +14,8 @@ inline constexpr double kHiddenWidth = 0.6, kGuideWidth = 0.4;  // of VectorOpti
 /// Dashes and the gaps between them. The round ends of a dash take a width from a gap.
 inline constexpr double kDash = 4, kGap = 3;  // of VectorOptions::stroke
 /// Regions are outlined in their own colour, lest the background shine through where two of them
-/// meet and each covers a part of the pixels. Thin, since it covers half of it of a neighbour.
-inline constexpr double kHairline = 0.35;  // pixels of the camera
+/// meet and each covers a part of the pixels. Thin, since half of it covers a neighbour.
+inline constexpr double kHairline = 0.6;  // pixels of the camera
 
 /// 8-bit sRGB, as files want it.
 using Rgb8 = std::array<std::uint8_t, 3>;
