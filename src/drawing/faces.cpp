@@ -3,10 +3,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "drawing/region_loops.hpp"
 #include "math/arena.hpp"
@@ -26,12 +27,12 @@ using RegionFinders = tbb::enumerable_thread_specific<RegionFinder>;
 
 /// Occluders in the order of their source polygons, so that those of a polygon stand together.
 std::vector<std::uint32_t> by_polygon(const ScreenScene& page, const Occluders& occluders) {
-    std::vector<std::uint32_t> order(occluders.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto polygon = [&](std::uint32_t k) {
-        return page.scene().triangle_polygon[occluders[k].id];
-    };
-    if (!std::ranges::is_sorted(order, {}, polygon)) std::ranges::stable_sort(order, {}, polygon);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted(occluders.size());
+    for (std::uint32_t k = 0; k < occluders.size(); ++k)
+        sorted[k] = {page.scene().triangle_polygon[occluders[k].id], k};
+    tbb::parallel_sort(sorted.begin(), sorted.end());
+    std::vector<std::uint32_t> order(sorted.size());
+    std::ranges::transform(sorted, order.begin(), [](const auto& item) { return item.second; });
     return order;
 }
 

@@ -2,16 +2,20 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "math/arena.hpp"
+#include "math/morton.hpp"
 #include "sightline/visibility.hpp"
 
 namespace sightline {
 namespace {
+
+constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
 
 Occluder make_occluder(const ScreenScene& page, std::uint32_t k) {
     const Corners c = page.corners(k);
@@ -49,20 +53,27 @@ bool covers_area(const ScreenScene& page, std::uint32_t k) {
     return side(p.x, p.y, q.x, q.y, r.x, r.y) != 0 && page.plane(page.id(k)).c > 0;
 }
 
-/// Triangles that cover an area, in their order.
-std::vector<std::uint32_t> find_covering(const ScreenScene& page, int threads) {
+/// Triangles that cover an area, near ones together: whatever looks for neighbours then finds the
+/// memory warm.
+std::vector<std::uint32_t> find_covering(const ScreenScene& page) {
+    struct Placed {
+        std::uint64_t place;
+        std::uint32_t triangle;
+    };
     const std::uint32_t n = page.triangle_count();
-    std::vector<std::uint8_t> covers(n);
-    in_arena(threads, [&] {
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& range) {
-            for (std::uint32_t k = range.begin(); k != range.end(); ++k)
-                covers[k] = covers_area(page, k) ? 1 : 0;
-        });
+    std::vector<Placed> all(n);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& range) {
+        for (std::uint32_t k = range.begin(); k != range.end(); ++k) {
+            const ScreenPoint& p = page.point(page.corners(k).x);
+            all[k] = {covers_area(page, k) ? morton_code(p.x, p.y) : kNowhere, k};
+        }
     });
-    std::vector<std::uint32_t> kept;
-    kept.reserve(n);
-    for (std::uint32_t k = 0; k < n; ++k)
-        if (covers[k] != 0) kept.push_back(k);
+    std::erase_if(all, [](const Placed& t) { return t.place == kNowhere; });
+    tbb::parallel_sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) {
+        return a.place != b.place ? a.place < b.place : a.triangle < b.triangle;
+    });
+    std::vector<std::uint32_t> kept(all.size());
+    std::ranges::transform(all, kept.begin(), &Placed::triangle);
     return kept;
 }
 
@@ -78,7 +89,7 @@ SpaceBox Occluder::extents() const {
 }
 
 Occluders::Occluders(const ScreenScene& page, TraceMethod method, int threads) {
-    const std::vector<std::uint32_t> kept = find_covering(page, threads);
+    const std::vector<std::uint32_t> kept = in_arena(threads, [&] { return find_covering(page); });
     all_.resize(kept.size());
     std::vector<PageTriangle> triangles(kept.size());
     in_arena(threads, [&] {

@@ -30,7 +30,7 @@ struct Occluder {
     [[nodiscard]] PageTriangle triangle() const { return {p, q, r, extents()}; }
 };
 
-/// All occluders of a page, in the order of its triangles. Read-only once made.
+/// All occluders of a page, near ones together. Read-only once made.
 class Occluders {
 public:
     Occluders(const ScreenScene& page, TraceMethod method, int threads);

@@ -1,7 +1,10 @@
 #include "drawing/regions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
+
+#include "math/clipped_triangle.hpp"
 
 namespace sightline {
 namespace {
@@ -72,6 +75,28 @@ PageBounds joined(const ScreenPoint& p, const ScreenPoint& q) {
     return {std::min(p.x, q.x), std::max(p.x, q.x), std::min(p.y, q.y), std::max(p.y, q.y)};
 }
 
+/// A box around the part of a hider that lies over the face.
+PageBounds bounds_over(const Occluder& hider, const Occluder& face) {
+    ClippedTriangle part(hider.p, hider.q, hider.r);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const ScreenPoint &a = face.point(k), &b = face.point(next_of(k));
+        const double dx = static_cast<double>(b.x) - a.x, dy = static_cast<double>(b.y) - a.y;
+        const double slack = 2 * (std::abs(dx) + std::abs(dy));  // two units, and more
+        part.keep([&](const ClippedTriangle::Corner& c) {
+            return dx * (c.y - a.y) - dy * (c.x - a.x) + slack;
+        });
+    }
+    const PageBounds all = hider.extents();
+    PageBounds box{all.x1, all.x0, all.y1, all.y0};
+    for (const ClippedTriangle::Corner& c : part.corners()) {
+        box.x0 = std::min(box.x0, static_cast<std::int32_t>(c.x) - 1);
+        box.x1 = std::max(box.x1, static_cast<std::int32_t>(c.x) + 1);
+        box.y0 = std::min(box.y0, static_cast<std::int32_t>(c.y) - 1);
+        box.y1 = std::max(box.y1, static_cast<std::int32_t>(c.y) + 1);
+    }
+    return box;
+}
+
 bool meet(const PageBounds& a, const PageBounds& b) {
     return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
 }
@@ -90,17 +115,29 @@ void RegionFinder::collect_hiders(const Occluder& face) {
         if (separates(face, other) || separates(other, face)) continue;
         const InFront where = in_front(other, face);
         if (where == InFront::nowhere) continue;
-        Hider hider{k, where == InFront::everywhere, sides_of(other), other.extents()};
+        Hider hider{k, where == InFront::everywhere, sides_of(other), bounds_over(other, face)};
         if (!hider.whole) {
             hider.sides.side[3] = line_where_deeper(face.plane, other.plane);
             hider.sides.count = 4;
         }
         hiders_.push_back(hider);
     }
-    order_.resize(hiders_.size());
-    for (std::uint32_t h = 0; h < order_.size(); ++h) order_[h] = h;
-    std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(hiders_[a].bounds.x0, a) < std::tie(hiders_[b].bounds.x0, b);
+    order_hiders(face.extents());
+}
+
+/// Sorts the hiders along the longer side of the face's box.
+void RegionFinder::order_hiders(const PageBounds& face) {
+    along_y_ = face.y1 - face.y0 > face.x1 - face.x0;
+    order_.clear();
+    longest_ = 0;
+    for (std::uint32_t h = 0; h < hiders_.size(); ++h) {
+        const PageBounds& b = hiders_[h].bounds;
+        const HiderPlace place = along_y_ ? HiderPlace{b.y0, b.y1, h} : HiderPlace{b.x0, b.x1, h};
+        longest_ = std::max(longest_, place.end - place.begin);
+        order_.push_back(place);
+    }
+    std::ranges::sort(order_, [](const HiderPlace& a, const HiderPlace& b) {
+        return std::tie(a.begin, a.hider) < std::tie(b.begin, b.hider);
     });
 }
 
@@ -146,30 +183,65 @@ void RegionFinder::drop_seams() {
     candidates_.resize(kept);
 }
 
-void RegionFinder::cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
+/// Whether a stretch lies clearly outside of a triangle: on the far side of one of its sides.
+bool RegionFinder::misses(const Chord& chord, const ConvexSides& sides) {
+    // The ends are off by less than 2^-16 of a unit, the products by 2^-52 of themselves.
+    constexpr double kSlack = 0x1p-15, kRounding = 0x1p-50;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const PageLine& side = sides.side[k];
+        const double slack =
+            kSlack * (std::abs(side.dl) + std::abs(side.dm)) + kRounding * std::abs(side.dn);
+        if (side.dl * chord.from.x + side.dm * chord.from.y + side.dn < -slack &&
+            side.dl * chord.to.x + side.dm * chord.to.y + side.dn < -slack)
+            return true;
+    }
+    return false;
+}
+
+// True when nothing of the stretch is left.
+bool RegionFinder::cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
                          std::uint32_t h, std::uint32_t skip) {
     const ConvexSides& sides = hiders_[h].sides;
-    if (const auto covered = inside(carrier, beside, stretch, sides)) covers_.push_back(*covered);
+    if (const auto covered = inside(carrier, beside, stretch, sides)) {
+        if (covered->from.line == stretch.from.line && covered->to.line == stretch.to.line)
+            return true;
+        covers_.push_back(*covered);
+    }
     // Where several hiders end along one line, the first of them has the border.
-    if (skip == kNoHider || h > skip) return;
+    if (skip == kNoHider || h > skip) return false;
     for (const PageLine& side : sides.all()) {
         if (growth(carrier, side) != 0 || sign_of_parallel(carrier, *stretch.from.line, side) != 0)
             continue;
         if (const auto same = inside(carrier, CarrierSide::right, stretch, sides))
             covers_.push_back(*same);
-        return;
+        return false;
     }
+    return false;
 }
 
 /// Leaves in left_ what no hider but `skip` covers.
 void RegionFinder::subtract_hiders(const PageLine& carrier, CarrierSide beside,
-                                   const Stretch& stretch, const PageBounds& bounds,
-                                   std::uint32_t skip) {
+                                   const Stretch& stretch, std::uint32_t skip) {
     covers_.clear();
     left_.clear();
-    for (const std::uint32_t h : order_) {
-        if (hiders_[h].bounds.x0 > bounds.x1) break;
-        if (h != skip && meet(hiders_[h].bounds, bounds)) cover(carrier, beside, stretch, h, skip);
+    const auto end = [&](const Place& place) {
+        return place.corner != nullptr ? glm::dvec2(place.corner->x, place.corner->y)
+                                       : crossing_of(carrier, *place.line);
+    };
+    const Chord chord{end(stretch.from), end(stretch.to)};
+    const double x0 = std::min(chord.from.x, chord.to.x) - 1,
+                 x1 = std::max(chord.from.x, chord.to.x) + 1;
+    const double y0 = std::min(chord.from.y, chord.to.y) - 1,
+                 y1 = std::max(chord.from.y, chord.to.y) + 1;
+    const double low = along_y_ ? y0 : x0, high = along_y_ ? y1 : x1;
+    auto place = std::ranges::lower_bound(order_, low - longest_, {}, &HiderPlace::begin);
+    for (; place != order_.end() && place->begin <= high; ++place) {
+        const std::uint32_t h = place->hider;
+        const Hider& hider = hiders_[h];
+        if (h == skip || hider.bounds.x1 < x0 || hider.bounds.x0 > x1 || hider.bounds.y0 > y1 ||
+            hider.bounds.y1 < y0)
+            continue;
+        if (!misses(chord, hider.sides) && cover(carrier, beside, stretch, h, skip)) return;
     }
     std::ranges::sort(covers_, [&](const Stretch& a, const Stretch& b) {
         return compare(carrier, a.from, b.from) < 0;
@@ -204,11 +276,10 @@ bool RegionFinder::try_candidate(const Candidate& c, std::vector<BorderPiece>& b
     const Hider& hider = hiders_[c.hider];
     const Occluder& o = occluders_[hider.occluder];
     const PageLine& carrier = hider.sides.side[c.side];
-    PageBounds bounds = hider.bounds;
     std::optional<Stretch> stretch;
     if (c.side < 3) {
-        bounds = joined(o.point(c.side), o.point(next_of(c.side)));
-        if (!meet(bounds, face_->extents())) return false;
+        if (!meet(joined(o.point(c.side), o.point(next_of(c.side))), face_->extents()))
+            return false;
         stretch = stretch_of(o, hider.sides, c.side);
         if (!hider.whole) stretch = inside(carrier, CarrierSide::right, *stretch, hider.sides);
     } else {
@@ -222,7 +293,7 @@ bool RegionFinder::try_candidate(const Candidate& c, std::vector<BorderPiece>& b
             return false;
     stretch = inside(carrier, CarrierSide::left, *stretch, own_);
     if (!stretch) return false;
-    subtract_hiders(carrier, CarrierSide::left, *stretch, bounds, c.hider);
+    subtract_hiders(carrier, CarrierSide::left, *stretch, c.hider);
     for (const Stretch& left : left_) border.push_back(piece(carrier, left, true));
     return true;
 }
@@ -230,8 +301,7 @@ bool RegionFinder::try_candidate(const Candidate& c, std::vector<BorderPiece>& b
 void RegionFinder::add_own_sides(const Occluder& face, std::vector<BorderPiece>& border) {
     for (std::size_t k = 0; k < 3; ++k) {
         const PageLine& carrier = own_.side[k];
-        subtract_hiders(carrier, CarrierSide::right, stretch_of(face, own_, k),
-                        joined(face.point(k), face.point(next_of(k))), kNoHider);
+        subtract_hiders(carrier, CarrierSide::right, stretch_of(face, own_, k), kNoHider);
         for (const Stretch& left : left_) border.push_back(piece(carrier, left, false));
     }
 }

@@ -39,7 +39,8 @@ public:
         : occluders_(occluders), method_(method) {}
 
     /// Appends the border of the visible part of a face, that of occluder number `k`; nothing when
-    /// it is hidden. About O(m log m) for m faces before it.
+    /// it is hidden. For m faces before it about O(m log m)
+    /// where they form surfaces, up to O(m^3) where all of them cross.
     FaceFate find(std::uint32_t k, std::vector<BorderPiece>& border);
 
 private:
@@ -48,7 +49,7 @@ private:
         std::uint32_t occluder = 0;
         bool whole = true;  ///< all of it; else where its plane is in front of F's
         ConvexSides sides;
-        PageBounds bounds;
+        PageBounds bounds;  ///< of what lies over F
     };
     /// A side of a hider that may border what is visible.
     struct Candidate {
@@ -57,15 +58,27 @@ private:
         bool forward = true;  ///< it runs from the lower to the higher point
     };
 
+    /// Where a hider begins and ends along the longer side of F's box.
+    struct HiderPlace {
+        std::int32_t begin = 0, end = 0;
+        std::uint32_t hider = 0;
+    };
+
     void collect_hiders(const Occluder& face);
+    void order_hiders(const PageBounds& face);
     void collect_candidates(const Occluder& face);
     void drop_seams();
     [[nodiscard]] bool try_candidate(const Candidate& candidate, std::vector<BorderPiece>& border);
     void add_own_sides(const Occluder& face, std::vector<BorderPiece>& border);
+    /// The ends of a stretch, rounded.
+    struct Chord {
+        glm::dvec2 from, to;
+    };
+    [[nodiscard]] static bool misses(const Chord& chord, const ConvexSides& sides);
     void subtract_hiders(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
-                         const PageBounds& bounds, std::uint32_t skip);
-    void cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
-               std::uint32_t hider, std::uint32_t skip);
+                         std::uint32_t skip);
+    [[nodiscard]] bool cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
+                             std::uint32_t hider, std::uint32_t skip);
     [[nodiscard]] BorderPiece piece(const PageLine& carrier, const Stretch& stretch,
                                     bool reversed) const;
 
@@ -76,7 +89,9 @@ private:
     ConvexSides own_;
     std::vector<std::uint32_t> near_;
     std::vector<Hider> hiders_;
-    std::vector<std::uint32_t> order_;  // of hiders, by the left end of their bounds
+    std::vector<HiderPlace> order_;  // by their beginnings
+    std::int32_t longest_ = 0;       // of them
+    bool along_y_ = false;           // else along x
     std::vector<Candidate> candidates_;
     std::vector<Stretch> covers_, left_;
 };

@@ -7,29 +7,18 @@
 #include <utility>
 
 #include "math/arena.hpp"
+#include "math/morton.hpp"
 
 namespace sightline {
 
 namespace {
 
-/// Bits of the lower half, with a gap after each.
-std::uint64_t spread(std::uint32_t value) {
-    std::uint64_t v = value;
-    v = (v | v << 16) & 0x0000ffff0000ffffULL;
-    v = (v | v << 8) & 0x00ff00ff00ff00ffULL;
-    v = (v | v << 4) & 0x0f0f0f0f0f0f0f0fULL;
-    v = (v | v << 2) & 0x3333333333333333ULL;
-    return (v | v << 1) & 0x5555555555555555ULL;
-}
-
 /// Coordinates within 2^24 of the origin; 25 bits each, under four bits for the class of size.
 std::uint64_t packing_key(const PageBox& box) {
-    constexpr std::int32_t kShift = 1 << 24;
-    const auto x = static_cast<std::uint32_t>(box.x0 + (box.x1 - box.x0) / 2 + kShift);
-    const auto y = static_cast<std::uint32_t>(box.y0 + (box.y1 - box.y0) / 2 + kShift);
     const auto size = static_cast<std::uint32_t>(std::max(box.x1 - box.x0, box.y1 - box.y0));
     const auto size_class = static_cast<std::uint64_t>(std::bit_width(size) / 2);
-    return size_class << 52 | spread(x) | spread(y) << 1;
+    return size_class << 52 |
+           morton_code(box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <bit>
 #include <cmath>
 
+#include "math/clipped_triangle.hpp"
+
 namespace sightline {
 namespace {
 
@@ -108,38 +110,19 @@ void PageGrid::choose_levels(std::span<const PageTriangle> triangles) {
 
 std::int32_t PageGrid::near_in(const Level& level, std::int32_t row, std::int32_t column,
                                const PageTriangle& t) {
-    struct Corner {
-        double x, y, z;
-    };
-    std::array<Corner, 8> corners{}, clipped{};
-    std::size_t count = 0;
-    for (const ScreenPoint* p : {&t.p, &t.q, &t.r})
-        corners[count++] = {static_cast<double>(p->x), static_cast<double>(p->y),
-                            static_cast<double>(p->z)};
-    const auto keep = [&](const auto& distance) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Corner &a = corners[i], &b = corners[i + 1 == count ? 0 : i + 1];
-            const double at_a = distance(a), at_b = distance(b);
-            if (at_a >= 0) clipped[kept++] = a;
-            if ((at_a >= 0) == (at_b >= 0)) continue;
-            const double s = at_a / (at_a - at_b);
-            clipped[kept++] = {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z)};
-        }
-        count = kept;
-        std::swap(corners, clipped);
-    };
+    ClippedTriangle part(t.p, t.q, t.r);
+    using Corner = ClippedTriangle::Corner;
     const auto [top, bottom] = slab(level, row);
     const double left = static_cast<double>(std::int64_t{column + level.column0} << level.shift);
     const double right = left + (bottom - top);
     // A unit more on every side, for rounding.
-    keep([&](const Corner& c) { return c.y - (top - 1); });
-    keep([&](const Corner& c) { return bottom + 1 - c.y; });
-    keep([&](const Corner& c) { return c.x - (left - 1); });
-    keep([&](const Corner& c) { return right + 1 - c.x; });
-    if (count == 0) return t.box.far;
-    double nearest = corners[0].z;
-    for (std::size_t i = 1; i < count; ++i) nearest = std::min(nearest, corners[i].z);
+    part.keep([&](const Corner& c) { return c.y - (top - 1); });
+    part.keep([&](const Corner& c) { return bottom + 1 - c.y; });
+    part.keep([&](const Corner& c) { return c.x - (left - 1); });
+    part.keep([&](const Corner& c) { return right + 1 - c.x; });
+    if (part.corners().empty()) return t.box.far;
+    double nearest = part.corners()[0].z;
+    for (const Corner& c : part.corners()) nearest = std::min(nearest, c.z);
     // The box may reach nearer than the corners, by the plane that the triangle shares.
     const double beyond = static_cast<double>(std::min({t.p.z, t.q.z, t.r.z})) - t.box.near;
     return std::max(t.box.near, static_cast<std::int32_t>(nearest - beyond - 2));
@@ -169,7 +152,8 @@ void PageGrid::fill(std::span<const PageTriangle> triangles) {
     residents_.resize(end);
     for_ranges(triangles.size(), [&](std::size_t i) {
         each_cell(i, [&](const Level& level, std::int32_t row, std::int32_t column) {
-            Resident resident{triangles[i].box, static_cast<std::uint32_t>(i)};
+            Resident resident{triangles[i].box, static_cast<std::uint32_t>(i),
+                              is_long(cells_of(level, triangles[i].box)) ? 1u : 0u};
             if (cells[i] > kFewOfOne) resident.box.near = near_in(level, row, column, triangles[i]);
             residents_[--std::atomic_ref(start_[cell_of(level, row, column)])] = resident;
         });

@@ -98,6 +98,8 @@ private:
     struct Resident {
         SpaceBox box;  // its near may be that of the part in the cell
         std::uint32_t item;
+        std::uint32_t
+            is_long;  // 1: it may stand in more than 2 x 2 cells, though not in all of its box
     };
     /// The grid of boxes of one size: cells of 2^shift units.
     struct Level {
@@ -159,7 +161,7 @@ private:
     [[nodiscard]] static bool is_first_common(const Level& level, const Resident& a,
                                               const Resident& b, std::int32_t row,
                                               std::int32_t column) {
-        if (is_long(cells_of(level, a.box)) || is_long(cells_of(level, b.box))) return false;
+        if ((a.is_long | b.is_long) != 0) return false;
         return (std::max(a.box.x0, b.box.x0) >> level.shift) - level.column0 == column &&
                (std::max(a.box.y0, b.box.y0) >> level.shift) - level.row0 == row;
     }
@@ -281,7 +283,7 @@ void PageGrid::partners(std::uint32_t item, const PageTriangle& triangle, VisitM
                     if (r.box.near > box.far) break;
                     if (!r.box.meets(box)) continue;
                     // Two long ones of one grid meet twice; the lower number counts.
-                    if (l == own && r.item <= item && is_long(cells_of(level, r.box))) continue;
+                    if (l == own && r.item <= item && r.is_long != 0) continue;
                     if (marks.visit(r.item)) visit(r.item);
                 }
             }

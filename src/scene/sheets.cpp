@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
@@ -120,42 +121,62 @@ private:
         return static_cast<std::int64_t>(std::floor(coordinate / kCell[axis]));
     }
 
-    // A hash table of chains: the first face of each slot, and after each face the next one.
+    /// A face in the hash table, with its plane, so that most are dismissed without a look
+    /// elsewhere.
+    struct Resident {
+        std::uint64_t cell;
+        glm::dvec3 normal;
+        std::uint32_t triangle;
+    };
+
+    // A hash table whose slots lie in one row: those of slot s are residents_[first_[s]] to
+    // residents_[first_[s + 1] - 1].
     void fill_cells() {
-        cells_.resize(planes_.size());
+        std::vector<std::uint64_t> cells(planes_.size());
         parallel_faces(planes_.size(), [&](std::uint32_t t) {
             const FacePlane& plane = planes_[t];
             const auto at = coordinates(plane, heading(plane) < 0 ? -1.0 : 1.0);
             std::array<std::int64_t, 4> cell{};
             for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
-            cells_[t] = pack(cell);
+            cells[t] = pack(cell);
         });
         std::size_t size = 16;
-        while (size < 2 * planes_.size()) size *= 2;
-        first_.assign(size, kNone);
-        next_.resize(planes_.size());
-        for (std::uint32_t t = 0; t < planes_.size(); ++t) {
-            if (!is_usable(t)) continue;
-            std::uint32_t& first = first_[slot_of(cells_[t])];
-            next_[t] = first;
-            first = t;
-        }
+        while (size < planes_.size()) size *= 2;
+        slots_ = size;
+        first_.assign(size + 1, 0);
+        // In any order within a slot: nothing that is decided depends on it.
+        parallel_faces(planes_.size(), [&](std::uint32_t t) {
+            if (is_usable(t)) ++std::atomic_ref(first_[slot_of(cells[t])]);
+        });
+        std::uint32_t end = 0;
+        for (std::uint32_t& first : first_) first = end += first;
+        residents_.resize(end);
+        parallel_faces(planes_.size(), [&](std::uint32_t t) {
+            if (!is_usable(t)) return;
+            const std::uint32_t at = --std::atomic_ref(first_[slot_of(cells[t])]);
+            residents_[at] = {cells[t], planes_[t].normal, t};
+        });
     }
 
     [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
-        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (first_.size() - 1);
+        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (slots_ - 1);
     }
 
-    // Calls visit(triangle) for all in a cell until it answers true; returns whether it did.
+    // Calls visit(triangle) for all in a cell whose normals agree with that of `t`, until it
+    // answers true; returns whether it did.
     template <class Visit>
-    bool any_in_cell(std::uint64_t cell, const Visit& visit) const {
-        for (std::uint32_t t = first_[slot_of(cell)]; t != kNone; t = next_[t])
-            if (cells_[t] == cell && visit(t)) return true;
+    bool any_in_cell(std::uint64_t cell, std::uint32_t t, const Visit& visit) const {
+        const std::size_t slot = slot_of(cell);
+        for (std::uint32_t i = first_[slot]; i < first_[slot + 1]; ++i) {
+            const Resident& r = residents_[i];
+            if (r.cell == cell && are_parallel(planes_[t].normal, r.normal) && visit(r.triangle))
+                return true;
+        }
         return false;
     }
 
     template <class Visit>
-    bool any_around(const std::array<double, 4>& at, const Visit& visit) const {
+    bool any_around(const std::array<double, 4>& at, std::uint32_t t, const Visit& visit) const {
         std::array<std::array<std::int64_t, 2>, 4> sides;
         for (std::size_t k = 0; k < 4; ++k)
             sides[k] = {cell_of(at[k] - kNormalTolerance, k), cell_of(at[k] + kNormalTolerance, k)};
@@ -167,26 +188,30 @@ private:
                 repeated = repeated || (which == 1 && sides[k][0] == sides[k][1]);
                 cell[k] = sides[k][which];
             }
-            if (!repeated && any_in_cell(pack(cell), visit)) return true;
+            if (!repeated && any_in_cell(pack(cell), t, visit)) return true;
         }
         return false;
     }
 
-    // Calls visit for the faces whose planes may be that of `t`, itself among them.
+    // Calls visit for the faces whose planes may be that of `t` and whose normals agree, itself
+    // among them.
     template <class Visit>
     bool any_near(std::uint32_t t, const Visit& visit) const {
         const double h = heading(planes_[t]);
-        if (h >= -2 * kNormalTolerance && any_around(coordinates(planes_[t], 1), visit))
+        if (h >= -2 * kNormalTolerance && any_around(coordinates(planes_[t], 1), t, visit))
             return true;
-        return h <= 2 * kNormalTolerance && any_around(coordinates(planes_[t], -1), visit);
+        return h <= 2 * kNormalTolerance && any_around(coordinates(planes_[t], -1), t, visit);
     }
 
     // -- clusters -----------------------------------------------------------------------------
 
+    [[nodiscard]] static bool are_parallel(const glm::dvec3& n, const glm::dvec3& m) {
+        return !(1 - std::abs(glm::dot(n, m)) > 0.5 * kNormalTolerance * kNormalTolerance);
+    }
+
+    // Whether a face whose normal agrees with that of the seed lies in its plane.
     [[nodiscard]] bool lies_in(std::uint32_t t, std::uint32_t seed) const {
         const FacePlane& plane = planes_[seed];
-        const double cosine = glm::dot(plane.normal, planes_[t].normal);
-        if (1 - std::abs(cosine) > 0.5 * kNormalTolerance * kNormalTolerance) return false;
         for (int k = 0; k < 3; ++k)
             if (std::abs(glm::dot(plane.normal, corner(t, k) - centre_) - plane.offset) >
                 tolerance_)
@@ -197,28 +222,38 @@ private:
     // Faces that have a partner at all, from the largest to the smallest.
     [[nodiscard]] std::vector<std::uint32_t> find_candidates() {
         std::vector<std::uint8_t> has_partner(planes_.size(), 0);
-        parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            has_partner[t] = is_usable(t) && any_near(t, [&](std::uint32_t other) {
-                                 return other != t && (lies_in(other, t) || lies_in(t, other));
-                             });
+        // In the order of the table: neighbours there ask the same cells.
+        parallel_faces(residents_.size(), [&](std::uint32_t i) {
+            const std::uint32_t t = residents_[i].triangle;
+            has_partner[t] = any_near(t, [&](std::uint32_t other) {
+                return other != t && (lies_in(other, t) || lies_in(t, other));
+            });
         });
-        std::vector<std::uint32_t> candidates;
+        std::vector<Candidate> candidates;
         for (std::uint32_t t = 0; t < has_partner.size(); ++t)
-            if (has_partner[t] != 0) candidates.push_back(t);
-        tbb::parallel_sort(candidates.begin(), candidates.end(),
-                           [&](std::uint32_t a, std::uint32_t b) { return comes_before(a, b); });
-        return candidates;
+            if (has_partner[t] != 0) candidates.push_back({planes_[t].area2, t});
+        tbb::parallel_sort(
+            candidates.begin(), candidates.end(),
+            [&](const Candidate& a, const Candidate& b) { return comes_before(a, b); });
+        std::vector<std::uint32_t> order(candidates.size());
+        std::ranges::transform(candidates, order.begin(), &Candidate::triangle);
+        return order;
     }
 
+    struct Candidate {
+        double area2;
+        std::uint32_t triangle;
+    };
+
     // By area, then by place; the number decides only between copies of one face.
-    [[nodiscard]] bool comes_before(std::uint32_t a, std::uint32_t b) const {
-        if (planes_[a].area2 != planes_[b].area2) return planes_[a].area2 > planes_[b].area2;
+    [[nodiscard]] bool comes_before(const Candidate& a, const Candidate& b) const {
+        if (a.area2 != b.area2) return a.area2 > b.area2;
         for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 &p = corner(a, k), &q = corner(b, k);
+            const glm::dvec3 &p = corner(a.triangle, k), &q = corner(b.triangle, k);
             const auto pt = std::tie(p.x, p.y, p.z), qt = std::tie(q.x, q.y, q.z);
             if (pt != qt) return pt < qt;
         }
-        return a < b;
+        return a.triangle < b.triangle;
     }
 
     void grow_sheets(const std::vector<std::uint32_t>& candidates) {
@@ -302,8 +337,9 @@ private:
     glm::dvec3 centre_{};
     double radius_ = 0, tolerance_ = 0;
     std::vector<FacePlane> planes_;
-    std::vector<std::uint64_t> cells_;
-    std::vector<std::uint32_t> first_, next_;
+    std::size_t slots_ = 0;  // a power of two
+    std::vector<std::uint32_t> first_;
+    std::vector<Resident> residents_;
     std::uint32_t sheet_count_ = 0;
 };
 
