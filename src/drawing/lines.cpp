@@ -36,28 +36,6 @@ private:
     ScreenTransform transform_;
 };
 
-void append_scene_edges(const ScreenScene& page, const TraceOptions& options, PageEdges& all) {
-    SceneEdges found = find_edges(page, options.edges, options.crease_angle, options.threads);
-    const EdgeProjector projector(page);
-    all.edges.reserve(found.edges.size());
-    for (const SceneEdge& edge : found.edges) {
-        const auto ends = projector.ends(edge.a, edge.b);
-        if (!ends || (ends->first.x == ends->second.x && ends->first.y == ends->second.y)) continue;
-        all.edges.push_back(
-            {ends->first, ends->second, edge.kind, edge.culled, edge.first_face, edge.face_count});
-    }
-    all.faces = std::move(found.faces);
-}
-
-void append_crossings(const Occluders& occluders, int threads, WorkMeter& meter, PageEdges& all) {
-    for (const Crossing& crossing : find_crossings(occluders, threads, meter)) {
-        all.edges.push_back({crossing.p, crossing.q, EdgeKind::intersection, false,
-                             static_cast<std::uint32_t>(all.faces.size()), 2});
-        all.faces.insert(all.faces.end(), crossing.faces.begin(), crossing.faces.end());
-        ++all.crossings;
-    }
-}
-
 /// Sheets of the faces of an edge, for HiddenLineFinder.
 void find_sheets(const ScreenScene& page, std::span<const std::uint32_t> faces,
                  std::vector<std::uint32_t>& sheets) {
@@ -194,13 +172,29 @@ private:
 
 }  // namespace
 
-PageEdges collect_edges(const ScreenScene& page, const Occluders& occluders,
-                        const TraceOptions& options, WorkMeter& meter) {
+PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options) {
     PageEdges all;
-    append_scene_edges(page, options, all);
-    if (options.edges.has(EdgeKind::intersection))
-        append_crossings(occluders, options.threads, meter, all);
+    if (options.edges.empty()) return all;
+    SceneEdges found = find_edges(page, options.edges, options.crease_angle, options.threads);
+    const EdgeProjector projector(page);
+    all.edges.reserve(found.edges.size());
+    for (const SceneEdge& edge : found.edges) {
+        const auto ends = projector.ends(edge.a, edge.b);
+        if (!ends || (ends->first.x == ends->second.x && ends->first.y == ends->second.y)) continue;
+        all.edges.push_back(
+            {ends->first, ends->second, edge.kind, edge.culled, edge.first_face, edge.face_count});
+    }
+    all.faces = std::move(found.faces);
     return all;
+}
+
+void append_crossings(const Occluders& occluders, int threads, WorkMeter& meter, PageEdges& all) {
+    for (const Crossing& crossing : find_crossings(occluders, threads, meter)) {
+        all.edges.push_back({crossing.p, crossing.q, EdgeKind::intersection, false,
+                             static_cast<std::uint32_t>(all.faces.size()), 2});
+        all.faces.insert(all.faces.end(), crossing.faces.begin(), crossing.faces.end());
+        ++all.crossings;
+    }
 }
 
 HiddenParts find_hidden_parts(const ScreenScene& page, const Occluders& occluders,

@@ -29,9 +29,12 @@ struct PageEdges {
     }
 };
 
-/// The lines that the options ask for, without those seen end-on or outside of the page.
-[[nodiscard]] PageEdges collect_edges(const ScreenScene& page, const Occluders& occluders,
-                                      const TraceOptions& options, WorkMeter& meter);
+/// The edges of the scene that the options ask for, without those seen end-on or outside of the
+/// page.
+[[nodiscard]] PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options);
+
+/// Appends the curves in which occluders cross.
+void append_crossings(const Occluders& occluders, int threads, WorkMeter& meter, PageEdges& all);
 
 /// The hidden parts of every edge, exactly: of edge i hidden[first[i]] .. hidden[first[i + 1] - 1],
 /// in order and apart.

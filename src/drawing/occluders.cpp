@@ -61,7 +61,7 @@ std::vector<std::uint32_t> find_covering(const ScreenScene& page) {
         std::uint32_t triangle;
     };
     const std::uint32_t n = page.triangle_count();
-    std::vector<Placed> all(n);
+    RawVector<Placed> all(n);
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 4096), [&](const auto& range) {
         for (std::uint32_t k = range.begin(); k != range.end(); ++k) {
             const ScreenPoint& p = page.point(page.corners(k).x);
@@ -91,7 +91,7 @@ SpaceBox Occluder::extents() const {
 Occluders::Occluders(const ScreenScene& page, TraceMethod method, int threads) {
     const std::vector<std::uint32_t> kept = in_arena(threads, [&] { return find_covering(page); });
     all_.resize(kept.size());
-    std::vector<PageTriangle> triangles(kept.size());
+    RawVector<PageTriangle> triangles(kept.size());
     in_arena(threads, [&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 4096),
                           [&](const auto& range) {

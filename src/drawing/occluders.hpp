@@ -79,7 +79,7 @@ public:
     }
 
 private:
-    std::vector<Occluder> all_;
+    RawVector<Occluder> all_;
     std::optional<PageGrid> grid_;
 };
 

@@ -1,9 +1,13 @@
 // From a page to a drawing.
+#include <tbb/parallel_invoke.h>
+
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "drawing/faces.hpp"
 #include "drawing/lines.hpp"
+#include "math/arena.hpp"
 
 namespace sightline {
 namespace {
@@ -16,10 +20,16 @@ Result<Drawing> trace(const ScreenScene& page, const TraceOptions& options) {
     assert(page.scene().quadrics.empty());
     Drawing drawing;
     drawing.resolution = page.resolution();
-    const Occluders occluders(page, options.method, options.threads);
     WorkMeter meter(options.progress);
     PageEdges edges;
-    if (!options.edges.empty()) edges = collect_edges(page, occluders, options, meter);
+    std::optional<Occluders> made;
+    in_arena(options.threads, [&] {
+        tbb::parallel_invoke([&] { made.emplace(page, options.method, options.threads); },
+                             [&] { edges = collect_edges(page, options); });
+    });
+    const Occluders& occluders = *made;
+    if (options.edges.has(EdgeKind::intersection))
+        append_crossings(occluders, options.threads, meter, edges);
     const bool fills = options.fill != FillStyle::none;
     meter.expect(edges.edges.size() + (fills ? occluders.size() : 0));
     const HiddenParts parts = find_hidden_parts(page, occluders, edges, options.threads, meter);

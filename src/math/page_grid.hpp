@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "math/page_line.hpp"
+#include "math/raw_vector.hpp"
 #include "sightline/screen_scene.hpp"
 
 namespace sightline {
@@ -192,7 +193,7 @@ private:
     std::vector<std::uint8_t> level_of_;  // of each item
     std::vector<Level> levels_;           // small cells first
     std::vector<std::size_t> start_;      // residents of cell c: start_[c] .. start_[c + 1] - 1
-    std::vector<Resident> residents_;     // of a cell: the nearest first
+    RawVector<Resident> residents_;       // of a cell: the nearest first
 };
 
 template <class Visitor>

@@ -50,7 +50,9 @@ inline CutLines cut_lines(const ScreenScene& page, const Occluders& occluders,
     CutLines lines;
     const std::function<bool(double)> nobody;
     WorkMeter meter(nobody);
-    lines.edges = collect_edges(page, occluders, options, meter);
+    lines.edges = collect_edges(page, options);
+    if (options.edges.has(EdgeKind::intersection))
+        append_crossings(occluders, options.threads, meter, lines.edges);
     lines.parts = find_hidden_parts(page, occluders, lines.edges, options.threads, meter);
     return lines;
 }
