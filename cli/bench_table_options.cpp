@@ -61,7 +61,7 @@ std::optional<Output> read_svg(OptionReader& reader) {
                       *path));
         return std::nullopt;
     }
-    Output output{"-o", *path};
+    Output output{{"-o", *path}};
     check_outputs(reader, {&output, 1}, {});
     return output;
 }

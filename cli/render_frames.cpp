@@ -359,7 +359,7 @@ void check_frame_outputs(OptionReader& reader, const RenderOptions& options,
         if (frames) {
             for (Output& file : files) file.path = numbered(file.path, k + 1);
         }
-        if (!options.tree.save.empty()) files.push_back({"--bsp-save", options.tree.save});
+        if (!options.tree.save.empty()) files.push_back({{"--bsp-save", options.tree.save}});
         check_outputs(reader, files, inputs);
     }
 }

@@ -1,17 +1,12 @@
 #include "drawing/carrier.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+
+#include "math/wide_int.hpp"
 
 namespace sightline {
 namespace {
-
-using boost::multiprecision::cpp_int_backend;
-using boost::multiprecision::signed_magnitude;
-using boost::multiprecision::unchecked;
-using Int512 =
-    boost::multiprecision::number<cpp_int_backend<512, 512, signed_magnitude, unchecked, void>>;
 
 /// Bits behind the point of crossings computed in integers.
 constexpr int kFraction = 20;

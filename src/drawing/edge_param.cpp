@@ -1,15 +1,9 @@
 #include "drawing/edge_param.hpp"
 
-#include <boost/multiprecision/cpp_int.hpp>
+#include "math/wide_int.hpp"
 
 namespace sightline {
 namespace {
-
-using boost::multiprecision::cpp_int_backend;
-using boost::multiprecision::signed_magnitude;
-using boost::multiprecision::unchecked;
-using Int256 =
-    boost::multiprecision::number<cpp_int_backend<256, 256, signed_magnitude, unchecked, void>>;
 
 static_assert(4 * kCoordBits + 2 * kDepthBits + 5 <= 255);
 

@@ -112,7 +112,8 @@ std::int32_t PageGrid::near_in(const Level& level, std::int32_t row, std::int32_
                                const PageTriangle& t) {
     ClippedTriangle part(t.p, t.q, t.r);
     using Corner = ClippedTriangle::Corner;
-    const auto [top, bottom] = slab(level, row);
+    const std::pair<double, double> slab = PageGrid::slab(level, row);
+    const double top = slab.first, bottom = slab.second;
     const double left = static_cast<double>(std::int64_t{column + level.column0} << level.shift);
     const double right = left + (bottom - top);
     // A unit more on every side, for rounding.

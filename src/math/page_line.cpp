@@ -1,18 +1,13 @@
 #include "math/page_line.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+
+#include "math/wide_int.hpp"
 
 namespace sightline {
 
 namespace {
-
-using boost::multiprecision::cpp_int_backend;
-using boost::multiprecision::signed_magnitude;
-using boost::multiprecision::unchecked;
-using Int512 =
-    boost::multiprecision::number<cpp_int_backend<512, 512, signed_magnitude, unchecked, void>>;
 
 // A product of three factors has 10b + 3Z + 12 bits, and six of them are summed.
 static_assert(10 * kCoordBits + 3 * kDepthBits + 15 < 511);

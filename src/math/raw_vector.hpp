@@ -3,7 +3,8 @@
 // memory.
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,23 +12,25 @@
 namespace sightline {
 
 template <class T>
-struct RawAllocator : std::allocator<T> {
-    // Memory from an allocator holds aggregates without more ado (they have implicit lifetimes).
+struct RawAllocator {
+    // Memory from operator new holds aggregates without more ado: they have implicit lifetimes.
     static_assert(std::is_aggregate_v<T> && std::is_trivially_copyable_v<T>);
+    using value_type = T;
 
     RawAllocator() = default;
     template <class U>
     RawAllocator(const RawAllocator<U>&) noexcept {}
-    template <class U>
-    struct rebind {
-        using other = RawAllocator<U>;
-    };
+    [[nodiscard]] T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new(n * sizeof(T)));
+    }
+    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p); }
     template <class U>
     void construct(U*) noexcept {}
     template <class U, class... A>
     void construct(U* p, A&&... a) {
         ::new (static_cast<void*>(p)) U{std::forward<A>(a)...};
     }
+    friend bool operator==(RawAllocator, RawAllocator) { return true; }
 };
 
 template <class T>

@@ -9,9 +9,9 @@
 #include <array>
 #include <cstdint>
 
-#include "sightline/screen_scene.hpp"
 #include "math/box_tree.hpp"
 #include "math/convex_region.hpp"
+#include "sightline/screen_scene.hpp"
 
 namespace sightline {
 

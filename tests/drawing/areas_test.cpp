@@ -155,7 +155,7 @@ void expect_area_of_flattened(const ScreenScene& screen, const std::string& what
 }
 
 TEST(VisibleAreas, SumUpToThoseOfTheFlattenedScene) {
-    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(100, 100, 20); ++seed) {
         const Scene scene = hostile_scene(seed);
         const ScreenScene screen = page(scene, hostile_camera(scene, seed, {256, 256}));
         if (sums_of(must(visible_areas(screen, {}))).visible > 1)
@@ -261,7 +261,7 @@ TEST(VisibleAreas, EndAtTheBordersOfThePage) {
 }
 
 TEST(VisibleAreas, DoNotDependOnTheOrderOfTrianglesButInTies) {
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(60, 60, 15); ++seed) {
         const Scene scene = hostile_scene(seed);
         std::vector<std::uint32_t> order;
         const Scene other = shuffled(scene, seed + 1, order);

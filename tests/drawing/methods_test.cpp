@@ -167,7 +167,7 @@ Scene heap_scene(std::uint64_t seed) {
 
 TEST(DrawingMethods, FastEqualsPairwiseOnHostileScenes) {
     Totals totals;
-    const std::uint64_t count = std::getenv("SIGHTLINE_FULL") != nullptr ? 5000 : 500;
+    const std::uint64_t count = amount(5000, 500, 60);
     for (std::uint64_t seed = 0; seed < count; ++seed) {
         const Scene scene = seed % 5 == 4 ? heap_scene(seed) : hostile_scene(seed);
         const Camera camera = hostile_camera(scene, seed, kPage);
@@ -186,11 +186,11 @@ TEST(DrawingMethods, FastEqualsPairwiseOnHostileScenes) {
 }
 
 TEST(DrawingMethods, FastEqualsPairwiseOnNastyScenes) {
-    const bool full = std::getenv("SIGHTLINE_FULL") != nullptr;
+    const auto simple = static_cast<std::uint32_t>(amount(1000, 150, 60));
     for (const NastyScene& nasty : nasty_scenes()) {
         // Trying all against all takes the third power of them, and an entangled scene has nearly
         // as many crossings as pairs.
-        const std::uint32_t most = nasty.entangled ? 60 : full ? 1000 : 150;
+        const std::uint32_t most = nasty.entangled ? 60 : simple;
         const Scene scene = beginning(nasty.scene, most);
         Totals totals;
         ASSERT_NO_FATAL_FAILURE(

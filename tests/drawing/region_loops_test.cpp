@@ -53,8 +53,8 @@ std::vector<Loop> joined(std::vector<BorderPiece> pieces) {
 
 bool same_loop(Loop a, Loop b) {
     const auto key = [](const glm::ivec2& p) { return std::pair(p.x, p.y); };
-    std::ranges::rotate(a, std::ranges::min_element(a, {}, key));
-    std::ranges::rotate(b, std::ranges::min_element(b, {}, key));
+    std::rotate(a.begin(), std::ranges::min_element(a, {}, key), a.end());
+    std::rotate(b.begin(), std::ranges::min_element(b, {}, key), b.end());
     return a == b;
 }
 

@@ -86,7 +86,7 @@ void judge(const ScreenScene& page, const Drawing& drawing, std::uint64_t seed, 
 
 TEST(SampledRegions, AreThoseOfTheDefinitionOnHostileScenes) {
     Score score;
-    for (std::uint64_t seed = 0; seed < (is_full() ? 3000u : 300u); ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(3000, 300, 40); ++seed) {
         const Scene scene = hostile_scene(seed);
         const Camera camera = hostile_camera(scene, seed, {200, 150});
         const ScreenScene screen =
@@ -101,7 +101,8 @@ TEST(SampledRegions, AreThoseOfTheDefinitionOnNastyScenes) {
     for (const NastyScene& nasty : nasty_scenes()) {
         // Where every face is before and behind every other one, time grows as their third power.
         const bool slow = nasty.entangled || nasty.name == "bundle of needles";
-        const Scene scene = beginning(nasty.scene, !slow ? 10000 : is_full() ? 250 : 80);
+        const Scene scene =
+            beginning(nasty.scene, !slow ? 10000 : static_cast<std::uint32_t>(amount(250, 80, 40)));
         Score score;
         const ScreenScene screen = page(scene, page_camera(scene, {64, 64}));
         judge(screen, must(trace(screen, regions_only())), 1, 2000, score);
@@ -124,7 +125,7 @@ Camera view_of(const Scene& scene, int k, int count, Resolution size) {
 }
 
 void expect_definition(const Scene& scene, const std::string& name) {
-    const int views = is_full() ? 20 : 3;
+    const int views = static_cast<int>(amount(20, 3, 1));
     Score score;
     for (int k = 0; k < views; ++k) {
         const ScreenScene screen =
@@ -193,7 +194,7 @@ void compare_to_picture(const Scene& scene, const Camera& camera, PictureScore& 
 
 void expect_picture(const Scene& scene, const std::string& name) {
     PictureScore score;
-    const int views = is_full() ? 20 : 2;
+    const int views = static_cast<int>(amount(20, 2, 1));
     const Resolution size = is_full() ? Resolution{320, 240} : Resolution{120, 90};
     for (int k = 0; k < views; ++k)
         compare_to_picture(scene, view_of(scene, k, views, size), score);
@@ -212,7 +213,7 @@ TEST(SampledRegions, AgreeWithPicturesOfASphere) { expect_picture(sphere_scene(4
 
 TEST(SampledRegions, AgreeWithPicturesOfHostileScenes) {
     PictureScore score;
-    for (std::uint64_t seed = 0; seed < (is_full() ? 1000u : 40u); ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(1000, 40, 10); ++seed) {
         const Scene scene = hostile_scene(seed);
         const Camera camera = hostile_camera(scene, seed, {60, 50});
         compare_to_picture(scene, camera, score);
@@ -226,6 +227,7 @@ TEST(SampledRegions, AgreeWithPicturesOfHostileScenes) {
 class RegionsOfModel : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
+        if (amount(1, 1, 0) == 0) GTEST_SKIP() << "takes too long under the sanitizers";
         if (std::string(GetParam()).starts_with("stanford") && !is_full())
             GTEST_SKIP() << "the bunny takes long: SIGHTLINE_FULL";
         scene_ = real_model(GetParam());

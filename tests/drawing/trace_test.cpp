@@ -29,7 +29,7 @@ bool equal_regions(const DrawnRegions& a, const DrawnRegions& b) {
 }
 
 TEST(Trace, DoesNotDependOnTheNumberOfThreads) {
-    for (std::uint64_t seed = 0; seed < 25; ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(25, 25, 4); ++seed) {
         const Scene scene = seed == 0 ? sphere_scene(60, 90) : hostile_scene(seed);
         const ScreenScene screen = page(scene, hostile_camera(scene, seed, {300, 200}));
         TraceOptions options = everything();
@@ -113,7 +113,7 @@ void expect_areas_of_regions(const Drawing& d, const ScreenScene& page) {
 
 TEST(Trace, DrawingsAreWellFormedAndStayOnThePage) {
     std::uint64_t clipped = 0, lines = 0;
-    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    for (std::uint64_t seed = 0; seed < amount(200, 200, 25); ++seed) {
         const Scene scene = hostile_scene(seed);
         const ScreenScene screen = page(scene, hostile_camera(scene, seed, {300, 200}),
                                         seed % 2 == 0 ? Cull::none : Cull::automatic);

@@ -1,6 +1,5 @@
 // Against an independent ray caster (Embree): ids may differ only within 1/256 pixel of an edge of
 // one of the two triangles, and depths only by what snapping can move them.
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "support/embree_scene.hpp"
 #include "support/models.hpp"
 #include "support/scenes.hpp"
 
@@ -25,26 +25,7 @@ struct Hit {
 
 class RayCaster {
 public:
-    explicit RayCaster(const Scene& scene)
-        : device_(rtcNewDevice("threads=2"), rtcReleaseDevice),
-          scene_(rtcNewScene(device_.get()), rtcReleaseScene) {
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* positions = static_cast<float*>(
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    3 * sizeof(float), scene.positions.size()));
-        for (const glm::dvec3& p : scene.positions)
-            for (int k = 0; k < 3; ++k) *positions++ = static_cast<float>(p[k]);
-        auto* indices = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), scene.triangles.size()));
-        for (const Corners& c : scene.triangles)
-            for (int k = 0; k < 3; ++k) *indices++ = c[k];
-        rtcCommitGeometry(mesh);
-        rtcAttachGeometry(scene_.get(), mesh);
-        rtcReleaseGeometry(mesh);
-        rtcCommitScene(scene_.get());
-    }
+    explicit RayCaster(const Scene& scene) : scene_(scene) {}
 
     [[nodiscard]] Hit cast(const Camera& camera, std::uint32_t i, std::uint32_t j) const {
         const glm::dvec3 origin = camera.unproject({i + 0.5, j + 0.5}, 0);
@@ -72,8 +53,7 @@ public:
     }
 
 private:
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)> scene_;
+    EmbreeScene scene_;
 };
 
 // Distance of a pixel's centre from the outline of a triangle's picture, in pixels.
