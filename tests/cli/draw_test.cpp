@@ -16,7 +16,7 @@ std::size_t count_of(const std::string& text, const std::string& needle) {
     return count;
 }
 
-class Draw : public ProgramTest {
+class DrawCommand : public ProgramTest {
 protected:
     [[nodiscard]] json report(std::vector<std::string> words) const {
         words.push_back("--json");
@@ -39,7 +39,7 @@ protected:
     }
 };
 
-TEST_F(Draw, ACubeShowsNineEdgesAndHidesThree) {
+TEST_F(DrawCommand, ACubeShowsNineEdgesAndHidesThree) {
     const json report = this->report({"draw", "cube.obj", "-o", "cube.svg", "--hidden", "dashed"});
     EXPECT_EQ(report["edges"], 12);
     EXPECT_EQ(report["visible_segments"], 9);
@@ -59,7 +59,7 @@ TEST_F(Draw, ACubeShowsNineEdgesAndHidesThree) {
     EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
 }
 
-TEST_F(Draw, BothMethodsWriteTheSameFile) {
+TEST_F(DrawCommand, BothMethodsWriteTheSameFile) {
     const std::vector<std::string> words = {
         "draw",    "cube.obj", "--hidden",          "solid",      "--fill",
         "lambert", "--edges",  "mesh,intersection", "--algorithm"};
@@ -72,7 +72,7 @@ TEST_F(Draw, BothMethodsWriteTheSameFile) {
     EXPECT_NE(read("fast.svg").size(), 0U);
 }
 
-TEST_F(Draw, EdgesAreChosenByKind) {
+TEST_F(DrawCommand, EdgesAreChosenByKind) {
     const auto edges = [&](const std::string& kinds) {
         return report({"draw", "cube.obj", "-o", "c.svg", "--edges", kinds})["edges"].get<int>();
     };
@@ -85,7 +85,7 @@ TEST_F(Draw, EdgesAreChosenByKind) {
     EXPECT_EQ(edges("none"), 0);
 }
 
-TEST_F(Draw, FillsOneRegionAFace) {
+TEST_F(DrawCommand, FillsOneRegionAFace) {
     const json report = this->report({"draw", "cube.obj", "-o", "c.svg", "--fill", "lambert"});
     EXPECT_EQ(report["regions"], 3);
     // Three quads, each in one piece: the diagonals are gone.
@@ -93,7 +93,7 @@ TEST_F(Draw, FillsOneRegionAFace) {
     EXPECT_EQ(count_of(fill, "<path"), 3U);
 }
 
-TEST_F(Draw, EveryFormatIsWrittenAndRepeats) {
+TEST_F(DrawCommand, EveryFormatIsWrittenAndRepeats) {
     const std::vector<std::pair<std::string, std::string>> formats = {
         {"svg", "<?xml"}, {"pdf", "%PDF"}, {"eps", "%!PS"}, {"dxf", ""}, {"png", "\x89PNG"}};
     for (const auto& [format, magic] : formats) {
@@ -111,7 +111,7 @@ TEST_F(Draw, EveryFormatIsWrittenAndRepeats) {
     EXPECT_NE(read("c.svg").find("id=\"construction\""), std::string::npos);
 }
 
-TEST_F(Draw, PagesHaveRealUnits) {
+TEST_F(DrawCommand, PagesHaveRealUnits) {
     const std::vector<std::string> scaled = {"draw",         "cube.obj",     "-o",      "c.svg",
                                              "--projection", "orthographic", "--view",  "front",
                                              "--page",       "200x100mm",    "--scale", "20:1"};
@@ -124,7 +124,7 @@ TEST_F(Draw, PagesHaveRealUnits) {
     EXPECT_NEAR(report["visible_length"].get<double>(), 80, 1e-4);
 }
 
-TEST_F(Draw, WrongUse) {
+TEST_F(DrawCommand, WrongUse) {
     const auto wrong = [&](std::vector<std::string> more,
                            std::initializer_list<std::string> needles) {
         std::vector<std::string> words = {"draw", "cube.obj"};
@@ -152,7 +152,7 @@ TEST_F(Draw, WrongUse) {
     expect_failure(1, {"draw", "missing.obj", "-o", "c.svg"}, {"missing.obj"});
 }
 
-TEST_F(Draw, VisibleSumsToTheSilhouette) {
+TEST_F(DrawCommand, VisibleSumsToTheSilhouette) {
     const auto rows =
         table({"visible", "cube.obj", "--projection", "orthographic", "--view", "front"});
     ASSERT_EQ(rows.size(), 13U);
@@ -162,7 +162,7 @@ TEST_F(Draw, VisibleSumsToTheSilhouette) {
     EXPECT_NEAR(visible, 1, 1e-6);  // the front of a unit cube, in its own unit; pages have steps
 }
 
-TEST_F(Draw, VisibleBySourcePolygonAndObject) {
+TEST_F(DrawCommand, VisibleBySourcePolygonAndObject) {
     EXPECT_EQ(table({"visible", "cube.obj", "--by", "polygon"}).size(), 7U);
     const auto objects = table({"visible", "cube.obj", "--by", "object"});
     ASSERT_EQ(objects.size(), 2U);
@@ -174,7 +174,7 @@ TEST_F(Draw, VisibleBySourcePolygonAndObject) {
     EXPECT_NEAR(all["total"]["area_visible"].get<double>(), std::sqrt(3.0), 1e-5);
 }
 
-TEST_F(Draw, VisibleFromManyDirections) {
+TEST_F(DrawCommand, VisibleFromManyDirections) {
     write("sun.txt", "# noon and evening\n0,-1,0\n-1 0 0\n\n1,1,1\n");
     const auto rows = table({"visible", "cube.obj", "--from-directions", "sun.txt"});
     ASSERT_EQ(rows.size(), 5U);
