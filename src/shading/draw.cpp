@@ -79,10 +79,10 @@ private:
 };
 
 /// The work of one draw().
-class Drawing {
+class PictureRun {
 public:
-    Drawing(const ScreenScene& screen, const Algorithm& algorithm, const DrawOptions& options,
-            std::span<const PictureFile> files)
+    PictureRun(const ScreenScene& screen, const Algorithm& algorithm, const DrawOptions& options,
+               std::span<const PictureFile> files)
         : options_(options),
           files_(files),
           resolution_(screen.resolution()),
@@ -207,7 +207,7 @@ Status draw_in_groups(const ScreenScene& screen, const Algorithm& algorithm,
                       const DrawOptions& options, std::span<const PictureFile> files,
                       std::uint32_t group_rows) {
     if (files.empty()) return success();
-    return Drawing(screen, algorithm, options, files).run(screen, algorithm, group_rows);
+    return PictureRun(screen, algorithm, options, files).run(screen, algorithm, group_rows);
 }
 
 Status draw(const ScreenScene& screen, const Algorithm& algorithm, const DrawOptions& options,
