@@ -113,7 +113,7 @@ void expect_areas_of_regions(const Drawing& d, const ScreenScene& page) {
 
 TEST(Trace, DrawingsAreWellFormedAndStayOnThePage) {
     std::uint64_t clipped = 0, lines = 0;
-    for (std::uint64_t seed = 0; seed < amount(200, 200, 25); ++seed) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
         const Scene scene = hostile_scene(seed);
         const ScreenScene screen = page(scene, hostile_camera(scene, seed, {300, 200}),
                                         seed % 2 == 0 ? Cull::none : Cull::automatic);
