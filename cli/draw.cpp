@@ -252,10 +252,8 @@ Result<int> run(const Arguments& arguments) {
     times.write = watch.lap();
     progress.clear();
     const auto rows = report_rows(times, *drawing, written);
-    if (options.common.stats) fmt::print(stderr, "{}", to_table(rows));
-    if (options.common.json)
-        if (Status printed = print(to_json(to_object(rows)) + "\n"); !printed)
-            return printed.error();
+    if (Status told = print_rows(rows, options.common.stats, options.common.json); !told)
+        return told.error();
     return 0;
 }
 

@@ -188,12 +188,6 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
     return rows;
 }
 
-Status report(const RenderOptions& options, const std::vector<Row>& rows) {
-    if (options.common.stats) fmt::print(stderr, "{}", to_table(rows));
-    if (options.common.json) return print(to_json(to_object(rows)) + "\n");
-    return success();
-}
-
 void warn_about_translucency(const RenderOptions& options, const Scene& scene, Progress& progress) {
     if (options.common.quiet || !has_translucent_faces(scene)) return;
     if (options.algorithm->open_layers != nullptr) return;
@@ -225,7 +219,8 @@ Result<int> run(const Arguments& arguments) {
     if (!rendered) return rendered.error();
     progress.clear();
     const auto rows = report_rows(options, shading, *scene, load_ms, *rendered);
-    if (Status done = report(options, rows); !done) return done.error();
+    if (Status done = print_rows(rows, options.common.stats, options.common.json); !done)
+        return done.error();
     return 0;
 }
 

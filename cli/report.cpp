@@ -135,6 +135,11 @@ Status print(std::string_view text) {
                    std::system_category().message(errno));
 }
 
+Status print_rows(const std::vector<Row>& rows, bool as_table, bool as_json) {
+    if (as_table) fmt::print(stderr, "{}", to_table(rows));
+    return as_json ? print(to_json(to_object(rows)) + "\n") : success();
+}
+
 double peak_memory_mib() {
     if (const auto mib = high_water_mib()) return *mib;
     rusage usage{};

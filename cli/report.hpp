@@ -72,6 +72,9 @@ struct Row {
 /// Writes to standard output and makes sure that it arrived.
 [[nodiscard]] Status print(std::string_view text);
 
+/// What --stats and --json ask for: a table on standard error, one line on standard output.
+[[nodiscard]] Status print_rows(const std::vector<Row>& rows, bool as_table, bool as_json);
+
 /// Time since it was made or restarted.
 class Stopwatch {
 public:

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 
 #include "math/arena.hpp"
 #include "math/elementary.hpp"

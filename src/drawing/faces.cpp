@@ -38,8 +38,8 @@ std::vector<std::uint32_t> by_polygon(const ScreenScene& page, const Occluders& 
 
 /// body(task, begin, end) for stretches of the order that never divide a polygon.
 template <class Body>
-std::size_t for_polygons(const ScreenScene& page, const Occluders& occluders,
-                         const std::vector<std::uint32_t>& order, int threads, const Body& body) {
+void for_polygons(const ScreenScene& page, const Occluders& occluders,
+                  const std::vector<std::uint32_t>& order, int threads, const Body& body) {
     std::vector<std::size_t> starts = {0};
     const auto polygon = [&](std::size_t i) {
         return page.scene().triangle_polygon[occluders[order[i]].id];
@@ -53,7 +53,6 @@ std::size_t for_polygons(const ScreenScene& page, const Occluders& occluders,
         tbb::parallel_for(std::size_t{0}, starts.size() - 1,
                           [&](std::size_t task) { body(task, starts[task], starts[task + 1]); });
     });
-    return starts.size() - 1;
 }
 
 /// The colour of a source polygon.

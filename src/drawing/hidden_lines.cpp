@@ -67,7 +67,7 @@ void HiddenLineFinder::test(const PageSegment& s, const Occluder& o) {
     Range range;
     Sides sides = kBoth;
     for (std::size_t k = 0; k < 3; ++k) {
-        const ScreenPoint &from = o.point(k), &to = o.point(k == 2 ? 0 : k + 1);
+        const ScreenPoint &from = o.point(k), &to = o.point(Occluder::next(k));
         const std::int64_t at_p = side(from.x, from.y, to.x, to.y, s.p.x, s.p.y);
         const std::int64_t at_q = side(from.x, from.y, to.x, to.y, s.q.x, s.q.y);
         if (at_p == 0 && at_q == 0) {

@@ -41,7 +41,7 @@ std::optional<EdgeParam> pierce(const ScreenPoint& p, const ScreenPoint& q, Int1
     const Int128 from_p = at_p < 0 ? -at_p : at_p, from_q = at_q < 0 ? -at_q : at_q;
     if (from_p + from_q == 0) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
-        const ScreenPoint &from = o.point(k), &to = o.point(k == 2 ? 0 : k + 1);
+        const ScreenPoint &from = o.point(k), &to = o.point(Occluder::next(k));
         const std::int64_t e_p = side(from.x, from.y, to.x, to.y, p.x, p.y);
         const std::int64_t e_q = side(from.x, from.y, to.x, to.y, q.x, q.y);
         if (e_p * from_q + e_q * from_p < 0) return std::nullopt;
@@ -85,7 +85,7 @@ private:
 /// The points where the border of `of` meets the plane of `other`, inside of it.
 void add_ends(const Occluder& of, const Sides& sides, const Occluder& other, Ends& ends) {
     for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = k == 2 ? 0 : k + 1;
+        const std::size_t next = Occluder::next(k);
         if (sides.sign[k] == 0 && inside(other, of.point(k))) ends.add(of.point(k));
         if (sides.sign[k] * sides.sign[next] >= 0) continue;
         const bool swap = of.corners[k] > of.corners[next];
@@ -131,7 +131,7 @@ bool before(const Crossing& c, const Crossing& d) {
 bool clip_edge(ScreenPoint& p, ScreenPoint& q, const Occluder& o) {
     EdgeParam from = EdgeParam::start(), to = EdgeParam::end();
     for (std::size_t k = 0; k < 3; ++k) {
-        const ScreenPoint &a = o.point(k), &b = o.point(k == 2 ? 0 : k + 1);
+        const ScreenPoint &a = o.point(k), &b = o.point(Occluder::next(k));
         const std::int64_t e_p = side(a.x, a.y, b.x, b.y, p.x, p.y);
         const std::int64_t e_q = side(a.x, a.y, b.x, b.y, q.x, q.y);
         if (e_p < 0 && e_q < 0) return false;

@@ -23,9 +23,11 @@ struct Occluder {
     std::int32_t near = 0, far = 0;          ///< z of its corners, and of its plane there
     Plane plane;                             ///< c > 0
 
+    /// Corner k; side k runs from there to corner next(k).
     [[nodiscard]] const ScreenPoint& point(std::size_t k) const {
         return k == 0 ? p : k == 1 ? q : r;
     }
+    [[nodiscard]] static std::size_t next(std::size_t k) { return k == 2 ? 0 : k + 1; }
     [[nodiscard]] SpaceBox extents() const;
     [[nodiscard]] PageTriangle triangle() const { return {p, q, r, extents()}; }
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNoHider = kNone;
 
-std::size_t next_of(std::size_t k) { return k == 2 ? 0 : k + 1; }
+std::size_t next_of(std::size_t k) { return Occluder::next(k); }
 std::size_t previous_of(std::size_t k) { return k == 0 ? 2 : k - 1; }
 
 /// Whether a side of one triangle has all of the other one on its outside, or on itself.
@@ -28,33 +28,31 @@ bool separates(const Occluder& f, const Occluder& g) {
 
 enum class InFront { nowhere, everywhere, partly };
 
-/// Where face g lies in front of face f, as far as the corners of both tell.
-InFront in_front(const Occluder& g, const Occluder& f) {
-    if (g.id == f.id) return InFront::nowhere;
-    const bool wins_ties = g.id < f.id;
-    if (g.sheet != kNone && g.sheet == f.sheet)
-        return wins_ties ? InFront::everywhere : InFront::nowhere;
-    bool all_equal = true;
-    bool in_front = false, behind = false;  // at corners of both, or of one of them
-    for (const Occluder* o : {&f, &g}) {
-        bool some_in_front = false, some_behind = false;
+/// Whether the plane of g is nearer, and deeper, than that of f at some corner of a triangle.
+struct Sight {
+    bool in_front = false, behind = false;
+
+    Sight(const Occluder& g, const Occluder& f, const Occluder& corners) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const int sign = compare_depth(f.plane, g.plane, o->point(k).x, o->point(k).y).sign;
-            some_in_front = some_in_front || sign > 0;
-            some_behind = some_behind || sign < 0;
-        }
-        all_equal = all_equal && !some_in_front && !some_behind;
-        if (o == &f) {
-            in_front = some_in_front;
-            behind = some_behind;
-        } else {
-            in_front = in_front && some_in_front;
-            behind = behind && some_behind;
+            const ScreenPoint& s = corners.point(k);
+            const int sign = compare_depth(f.plane, g.plane, s.x, s.y).sign;
+            in_front = in_front || sign > 0;
+            behind = behind || sign < 0;
         }
     }
-    if (all_equal) return wins_ties ? InFront::everywhere : InFront::nowhere;
-    if (!in_front) return InFront::nowhere;
-    return behind ? InFront::partly : InFront::everywhere;
+    [[nodiscard]] bool equal() const { return !in_front && !behind; }
+};
+
+/// Where face g lies in front of face f. The difference of their depths is linear, so where it has
+/// one sign at all corners of either it has no other where they overlap.
+InFront in_front(const Occluder& g, const Occluder& f) {
+    if (g.id == f.id) return InFront::nowhere;
+    const InFront at_ties = g.id < f.id ? InFront::everywhere : InFront::nowhere;
+    if (g.sheet != kNone && g.sheet == f.sheet) return at_ties;
+    const Sight at_f(g, f, f), at_g(g, f, g);
+    if (at_f.equal() && at_g.equal()) return at_ties;
+    if (!at_f.in_front || !at_g.in_front) return InFront::nowhere;
+    return at_f.behind && at_g.behind ? InFront::partly : InFront::everywhere;
 }
 
 ConvexSides sides_of(const Occluder& o) {
@@ -95,10 +93,6 @@ PageBounds bounds_over(const Occluder& hider, const Occluder& face) {
         box.y1 = std::max(box.y1, static_cast<std::int32_t>(c.y) + 1);
     }
     return box;
-}
-
-bool meet(const PageBounds& a, const PageBounds& b) {
-    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
 }
 
 }  // namespace
@@ -278,7 +272,7 @@ bool RegionFinder::try_candidate(const Candidate& c, std::vector<BorderPiece>& b
     const PageLine& carrier = hider.sides.side[c.side];
     std::optional<Stretch> stretch;
     if (c.side < 3) {
-        if (!meet(joined(o.point(c.side), o.point(next_of(c.side))), face_->extents()))
+        if (!face_->extents().meets(joined(o.point(c.side), o.point(next_of(c.side)))))
             return false;
         stretch = stretch_of(o, hider.sides, c.side);
         if (!hider.whole) stretch = inside(carrier, CarrierSide::right, *stretch, hider.sides);

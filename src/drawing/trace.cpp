@@ -1,6 +1,7 @@
 // From a page to a drawing.
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -37,6 +38,8 @@ Result<Drawing> trace(const ScreenScene& page, const TraceOptions& options) {
     append_lines(page, edges, parts, options.hidden, drawing);
     drawing.counts.edges = edges.edges.size();
     drawing.counts.intersections = edges.crossings;
+    drawing.counts.dismissed =
+        static_cast<std::uint64_t>(std::ranges::count_if(edges.edges, &PageEdge::culled));
     drawing.counts.occluder_tests = parts.tests;
     if (fills) append_regions(page, occluders, options, meter, drawing);
     meter.finish();

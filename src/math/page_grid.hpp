@@ -84,9 +84,10 @@ public:
     /// Cells of all grids; the arguments of pairs().
     [[nodiscard]] std::size_t cell_count() const { return start_.empty() ? 0 : start_.size() - 1; }
 
-    /// visit(a, b) for every two triangles of one grid whose boxes meet in x, y and z, in some
-    /// cell: over all cells every such pair is met at least once, and pairs that are not long just
-    /// once.
+    // Every two triangles whose boxes meet in x, y and z are met once, by pairs() over all cells or
+    // by partners() over all items.
+
+    /// visit(a, b): pairs of short triangles (of at most 2 x 2 cells) in one grid.
     template <class Visit>
     void pairs(std::size_t begin_cell, std::size_t end_cell, const Visit& visit) const;
 
@@ -99,8 +100,8 @@ private:
     struct Resident {
         SpaceBox box;  // its near may be that of the part in the cell
         std::uint32_t item;
-        std::uint32_t
-            is_long;  // 1: it may stand in more than 2 x 2 cells, though not in all of its box
+        /// 1: its box is larger than 2 x 2 cells, and it does not stand in all of them.
+        std::uint32_t is_long;
     };
     /// The grid of boxes of one size: cells of 2^shift units.
     struct Level {

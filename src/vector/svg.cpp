@@ -4,8 +4,7 @@
 // `hidden` and `visible`, which are always there, and `construction` when there are guides. They,
 // and the groups of kinds inside, are layers for Inkscape.
 //
-//   fill      regions, one <path> each: data-object, and data-source = number of the source
-//   polygon.
+//   fill      regions, one <path> each: data-object, and data-source, the source polygon's number.
 //             They do not overlap, so their order is free: those of one colour stand together in a
 //             <g fill stroke>, which has the colour for all of them. The stroke is a hairline.
 //   hidden, visible
