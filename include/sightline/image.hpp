@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
@@ -67,6 +68,15 @@ enum class ImageFormat { png, exr, npy };
 /// 8-bit grey: 255 where something is seen.
 [[nodiscard]] Status write_mask_png(const std::string& path, const MaskImage& mask);
 
+/// Where a picture stands in the coordinates of an EXR file; x to the right, y down.
+struct Placement {
+    struct Frame {
+        glm::ivec2 first, last;
+    };
+    glm::ivec2 origin{0, 0};     ///< of the left pixel of the top row
+    std::optional<Frame> frame;  ///< corners of the whole that it is a part of; nothing: itself
+};
+
 /// What goes into an EXR file. Absent pointers leave their channels out; all must have one size.
 struct ExrLayers {
     const ColorImage* color = nullptr;     ///< R G B A, half
@@ -74,8 +84,34 @@ struct ExrLayers {
     const NormalImage* normals = nullptr;  ///< N.X N.Y N.Z, float
     const IdImage* objects = nullptr;      ///< "object", uint
     const IdImage* triangles = nullptr;    ///< "triangle", uint
+    Placement placement = {};
 };
 [[nodiscard]] Status write_exr(const std::string& path, const ExrLayers& layers);
+
+/// One of the surfaces or volumes that a pixel of a deep picture has. From z to z_back, where it is
+/// as deep as z_back > z says, it absorbs evenly; else it is a surface at z.
+struct DeepSample {
+    float z = 0, z_back = 0;                     ///< metric, along the gaze
+    glm::vec4 color{0, 0, 0, 0};                 ///< linear light, premultiplied alpha
+    std::uint32_t object = ~0u, triangle = ~0u;  ///< kNone = not known
+};
+
+/// A picture with any number of samples in each pixel, row by row from the top.
+struct DeepImage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint64_t> first;  ///< width * height + 1: where each pixel's samples begin
+    std::vector<DeepSample> samples;
+    Placement placement = {};
+
+    /// The samples of the pixel number `pixel`.
+    [[nodiscard]] std::span<const DeepSample> pixel(std::size_t pixel) const {
+        return {samples.data() + first[pixel], samples.data() + first[pixel + 1]};
+    }
+};
+
+/// A deep scan-line EXR: Z, ZBack, R, G, B and A as float, "object" and "triangle" as uint. The
+/// bytes depend on the pixels only.
+[[nodiscard]] Status write_deep_exr(const std::string& path, const DeepImage& image);
 
 /// NumPy .npy, version 1.0, C order, little-endian.
 [[nodiscard]] Status write_npy(const std::string& path, const DepthImage& depth);     // <f4

@@ -2,57 +2,30 @@
 //
 // One scan-line part. Colour is half, whatever is measured (Z, N) float, ids are uint. The header
 // holds what the format demands and nothing that differs from run to run.
-#include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfThreading.h>
-#include <fmt/core.h>
 #include <half.h>
 
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <stdexcept>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "image/atomic_file.hpp"
+#include "image/exr_stream.hpp"
 #include "image/exr_writer.hpp"
 #include "sightline/image.hpp"
 
 namespace sightline {
 namespace {
 
-/// zlib's: measured on 1080p pictures, higher levels take longer for little.
-constexpr int kCompressionLevel = 1;
-
-/// OpenEXR's view of an AtomicFile, whose first error sticks.
-class FileStream final : public Imf::OStream {
-public:
-    explicit FileStream(AtomicFile file) : OStream(file.path().c_str()), file_(std::move(file)) {}
-    void write(const char c[], int n) override {
-        demand(file_.write(c, static_cast<std::size_t>(n)));
-    }
-    std::uint64_t tellp() override { return file_.position(); }
-    void seekp(std::uint64_t position) override { demand(file_.seek(position)); }
-    [[nodiscard]] AtomicFile& file() { return file_; }
-
-private:
-    /// OpenEXR wants an exception; it is caught at the border of this file.
-    static void demand(const Status& status) {
-        if (!status) throw std::runtime_error(status.error().message);
-    }
-    AtomicFile file_;
-};
-
-Imf::Header header_of(std::uint32_t width, std::uint32_t height, const ExrChannels& channels) {
-    Imf::Header header(static_cast<int>(width), static_cast<int>(height));
-    header.compression() = Imf::ZIP_COMPRESSION;
-    header.zipCompressionLevel() = kCompressionLevel;
+Imf::Header header_of(std::uint32_t width, std::uint32_t height, const ExrChannels& channels,
+                      const Placement& placement) {
+    Imf::Header header = exr_header(width, height, placement, Imf::ZIP_COMPRESSION);
     const auto insert = [&header](const char* name, Imf::PixelType type) {
         header.channels().insert(name, Imf::Channel(type));
     };
@@ -81,23 +54,13 @@ int threads_for(std::uint32_t width, const ExrChannels& channels) {
     return static_cast<int>(std::min(most, static_cast<std::uint64_t>(Imf::globalThreadCount())));
 }
 
-Error exr_error(const std::string& path, std::string_view cause) {
-    return {ErrorKind::bad_option,
-            fmt::format("cannot write '{}': {}; choose another size or format", path, cause)};
-}
-
 }  // namespace
 
 struct ExrWriter::State {
-    State(AtomicFile target, std::uint32_t w, std::uint32_t h, const ExrChannels& channels)
-        : stream(std::move(target)), width(w) {
-        output.emplace(stream, header_of(w, h, channels), threads_for(w, channels));
-    }
-
-    /// The file's error when it has one, else OpenEXR's.
-    [[nodiscard]] Error error(std::string_view cause) {
-        if (const Status status = stream.file().status(); !status) return status.error();
-        return exr_error(stream.file().path(), cause);
+    State(AtomicFile target, std::uint32_t w, std::uint32_t h, const ExrChannels& channels,
+          const Placement& placement)
+        : stream(std::move(target)), width(w), next_row(placement.origin) {
+        output.emplace(stream, header_of(w, h, channels, placement), threads_for(w, channels));
     }
 
     /// A slice of `components` interleaved numbers of type T, the first one at `rows`, which is
@@ -105,10 +68,7 @@ struct ExrWriter::State {
     template <class T>
     Imf::Slice slice(Imf::PixelType type, const T* rows, std::size_t components) const {
         const std::size_t step = sizeof(T) * components, stride = step * width;
-        // OpenEXR wants the address that row 0 would have; it never reads there.
-        const std::uintptr_t origin = reinterpret_cast<std::uintptr_t>(rows) - stride * next_row;
-        // NOLINTNEXTLINE(performance-no-int-to-ptr): there is no object at that address
-        return {type, reinterpret_cast<char*>(origin), step, stride};
+        return {type, exr_base(rows, next_row, step, stride), step, stride};
     }
 
     void write(const ExrRows& rows, std::uint32_t count) {
@@ -128,7 +88,7 @@ struct ExrWriter::State {
         }
         output->setFrameBuffer(frame);
         output->writePixels(static_cast<int>(count));
-        next_row += count;
+        next_row.y += static_cast<int>(count);
     }
 
     void insert_color(Imf::FrameBuffer& frame, const glm::vec4* color, std::uint32_t count) {
@@ -141,10 +101,10 @@ struct ExrWriter::State {
         }
     }
 
-    FileStream stream;  // before output, which writes its last bytes when it goes
+    ExrStream stream;  // before output, which writes its last bytes when it goes
     std::optional<Imf::OutputFile> output;
     std::uint32_t width = 0;
-    std::size_t next_row = 0;
+    glm::ivec2 next_row;  // coordinates of its first pixel in the file
     std::vector<half> halves;
 };
 
@@ -154,12 +114,14 @@ ExrWriter& ExrWriter::operator=(ExrWriter&&) noexcept = default;
 ExrWriter::~ExrWriter() = default;
 
 Result<ExrWriter> ExrWriter::create(const std::string& path, std::uint32_t width,
-                                    std::uint32_t height, ExrChannels channels) {
+                                    std::uint32_t height, ExrChannels channels,
+                                    const Placement& placement) {
     Result<AtomicFile> file = AtomicFile::create(path, AtomicFile::Access::seekable);
     if (!file) return file.error();
     if (width == 0 || height == 0) return exr_error(path, "the picture has no pixels");
     try {
-        return ExrWriter(std::make_unique<State>(std::move(*file), width, height, channels));
+        return ExrWriter(
+            std::make_unique<State>(std::move(*file), width, height, channels, placement));
     } catch (const std::exception& e) {
         return exr_error(path, e.what());
     }
@@ -170,7 +132,7 @@ Status ExrWriter::write_rows(const ExrRows& rows, std::uint32_t count) {
         state_->write(rows, count);
         return success();
     } catch (const std::exception& e) {
-        return state_->error(e.what());
+        return state_->stream.error(e.what());
     }
 }
 
@@ -214,7 +176,8 @@ Status write_exr(const std::string& path, const ExrLayers& layers) {
     Result<ExrWriter> writer = ExrWriter::create(
         path, width, height,
         {layers.color != nullptr, layers.depth != nullptr, layers.normals != nullptr,
-         layers.objects != nullptr, layers.triangles != nullptr});
+         layers.objects != nullptr, layers.triangles != nullptr},
+        layers.placement);
     if (!writer) return writer.error();
     constexpr std::uint32_t kBlockRows = 64;  // a multiple of the 16 rows of a compressed block
     for (std::uint32_t y = 0; y < height; y += kBlockRows) {

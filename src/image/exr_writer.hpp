@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sightline/error.hpp"
+#include "sightline/image.hpp"
 
 namespace sightline {
 
@@ -31,7 +32,8 @@ class ExrWriter {
 public:
     /// Errors: io for the file; bad_option for a picture without pixels or channels.
     [[nodiscard]] static Result<ExrWriter> create(const std::string& path, std::uint32_t width,
-                                                  std::uint32_t height, ExrChannels channels);
+                                                  std::uint32_t height, ExrChannels channels,
+                                                  const Placement& placement = {});
     ExrWriter(ExrWriter&&) noexcept;
     ExrWriter& operator=(ExrWriter&&) noexcept;
     ~ExrWriter();
