@@ -11,33 +11,66 @@
 
 namespace sightline::testing {
 
+/// Ids of things on a page, by the cells of a uniform grid, about as many cells as things.
+class PageCells {
+public:
+    PageCells(const Resolution& size, int subpixel_bits, std::size_t things)
+        : side_(1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(things)))),
+          scale_(static_cast<double>(side_) / std::ldexp(1.0, subpixel_bits) /
+                 glm::dvec2(size.width, size.height)),
+          cells_(side_ * side_) {}
+
+    /// What has a point between low and high is then found there: cell_of() is monotone.
+    void add(const glm::dvec2& low, const glm::dvec2& high, std::uint32_t id) {
+        const Cell first = cell_of(low), last = cell_of(high);
+        for (std::size_t row = first.row; row <= last.row; ++row)
+            for (std::size_t column = first.column; column <= last.column; ++column)
+                cells_[row * side_ + column].push_back(id);
+    }
+
+    [[nodiscard]] const std::vector<std::uint32_t>& around(const glm::dvec2& p) const {
+        const Cell cell = cell_of(p);
+        return cells_[cell.row * side_ + cell.column];
+    }
+
+private:
+    struct Cell {
+        std::size_t column, row;
+    };
+    /// The one nearest to it, of a point beside the page.
+    [[nodiscard]] Cell cell_of(const glm::dvec2& p) const {
+        const auto last = static_cast<double>(side_ - 1);
+        return {static_cast<std::size_t>(std::clamp(p.x * scale_.x, 0.0, last)),
+                static_cast<std::size_t>(std::clamp(p.y * scale_.y, 0.0, last))};
+    }
+
+    std::size_t side_;
+    glm::dvec2 scale_;  ///< from units to cells
+    std::vector<std::vector<std::uint32_t>> cells_;
+};
+
 /// The canonical answer in any point of a page: of the triangles that cover it the one with the
 /// least depth, of those the lowest id. Nothing but the definition, and a table of which triangles
 /// may cover a point.
 class CanonicalAnswer {
 public:
-    explicit CanonicalAnswer(const ScreenScene& page) : page_(page) {
-        cells_.resize(std::size_t{kSide} * kSide);
-        const Resolution size = page.resolution();
-        const auto side = static_cast<double>(std::max(size.width, size.height));
-        cell_ = static_cast<std::int32_t>(std::ldexp(side, page.subpixel_bits()) / kSide) + 1;
+    explicit CanonicalAnswer(const ScreenScene& page)
+        : page_(page), grid_(page.resolution(), page.subpixel_bits(), page.triangle_count()) {
         for (std::uint32_t k = 0; k < page.triangle_count(); ++k)
             if (page.drawable(k)) add(k);
     }
 
     /// kNone: nothing.
     [[nodiscard]] std::uint32_t at(std::int32_t x, std::int32_t y) const {
-        if (x < 0 || y < 0 || x / cell_ >= kSide || y / cell_ >= kSide) return kNone;
-        std::uint32_t best = kNone;
-        Plane nearest;
-        for (const Entry& entry : cells_[static_cast<std::size_t>(y / cell_ * kSide + x / cell_)]) {
-            if (!covers(entry.triangle, x, y) || entry.plane.c <= 0) continue;
-            const int sign = best == kNone ? -1 : compare_depth_exactly(entry.plane, nearest, x, y);
-            if (sign > 0 || (sign == 0 && entry.id > best)) continue;
-            best = entry.id;
-            nearest = entry.plane;
+        const Entry* best = nullptr;
+        for (const std::uint32_t k : grid_.around({x, y})) {
+            const Entry& entry = entries_[k];
+            if (entry.plane.c <= 0 || !covers(entry.triangle, x, y)) continue;
+            const int sign =
+                best == nullptr ? -1 : compare_depth_exactly(entry.plane, best->plane, x, y);
+            if (sign < 0 || (sign == 0 && entry.id < best->id)) best = &entry;
         }
-        return best;
+        return best == nullptr ? kNone : best->id;
     }
 
     /// Whether something else is seen somewhere within two units: there is a border near by.
@@ -55,7 +88,6 @@ public:
     }
 
 private:
-    static constexpr std::int32_t kSide = 64;
     struct Entry {
         OrientedTriangle triangle;
         Plane plane;
@@ -65,17 +97,15 @@ private:
     void add(std::uint32_t k) {
         const Corners c = page_.corners(k);
         const ScreenPoint &p = page_.point(c.x), &q = page_.point(c.y), &r = page_.point(c.z);
-        const Entry entry{{p, q, r}, page_.plane(page_.id(k)), page_.id(k)};
         const auto [x0, x1] = std::minmax({p.x, q.x, r.x});
         const auto [y0, y1] = std::minmax({p.y, q.y, r.y});
-        for (std::int32_t row = y0 / cell_; row <= y1 / cell_; ++row)
-            for (std::int32_t column = x0 / cell_; column <= x1 / cell_; ++column)
-                cells_[static_cast<std::size_t>(row * kSide + column)].push_back(entry);
+        grid_.add({x0, y0}, {x1, y1}, static_cast<std::uint32_t>(entries_.size()));
+        entries_.push_back({{p, q, r}, page_.plane(page_.id(k)), page_.id(k)});
     }
 
     const ScreenScene& page_;
-    std::int32_t cell_ = 1;
-    std::vector<std::vector<Entry>> cells_;
+    PageCells grid_;
+    std::vector<Entry> entries_;
 };
 
 /// The regions of a drawing, asked for the one in which a point lies: even-odd, over the edges that
@@ -84,74 +114,71 @@ class RegionAnswer {
 public:
     struct At {
         std::vector<std::uint32_t> polygons;  ///< of all regions that hold the point
-        double distance = std::numeric_limits<double>::infinity();  ///< to an edge near it, if any
+        bool on_edge = false;                 ///< or so near one as it was asked for
     };
 
-    RegionAnswer(const Drawing& drawing, int subpixel_bits) : polygons_(drawing.regions.polygon) {
-        const DrawnRegions& regions = drawing.regions;
-        const double unit = std::ldexp(1.0, subpixel_bits);
-        height_ = std::ldexp(drawing.resolution.height, subpixel_bits) / kBands;
-        bands_.resize(kBands);
-        for (std::uint32_t r = 0; r < regions.size(); ++r)
-            for (std::uint32_t l = regions.first_loop[r]; l < regions.first_loop[r + 1]; ++l)
-                for (std::uint32_t k = regions.first_point[l]; k < regions.first_point[l + 1];
-                     ++k) {
-                    const bool last = k + 1 == regions.first_point[l + 1];
-                    const std::uint32_t next = last ? regions.first_point[l] : k + 1;
-                    add({unit * regions.points[k], unit * regions.points[next], r});
-                }
+    /// near: up to which distance from an edge, in units, a point is taken to be on it.
+    RegionAnswer(const Drawing& drawing, int subpixel_bits, double near)
+        : regions_(drawing.regions),
+          near_(near),
+          grid_(drawing.resolution, subpixel_bits, drawing.regions.size()) {
+        for (glm::dvec2& point : regions_.points) point *= std::ldexp(1.0, subpixel_bits);
+        for (std::uint32_t r = 0; r < regions_.size(); ++r) add(r);
     }
 
-    [[nodiscard]] At at(glm::dvec2 point, double within) const {
+    [[nodiscard]] At at(const glm::dvec2& point) const {
         At at;
-        std::vector<std::uint32_t> toggled;
-        for (const Edge& edge : bands_[band_of(point.y)]) {
-            at.distance = std::min(at.distance, distance(edge, point, within));
-            if ((edge.from.y > point.y) == (edge.to.y > point.y)) continue;
-            const glm::dvec2 along = edge.to - edge.from, beside = point - edge.from;
-            const double cross = along.x * beside.y - along.y * beside.x;
-            if ((along.y > 0) == (cross < 0)) toggled.push_back(edge.region);
-        }
-        std::ranges::sort(toggled);
-        for (std::size_t i = 0, end = 0; i < toggled.size(); i = end) {
-            while (end < toggled.size() && toggled[end] == toggled[i]) ++end;
-            if ((end - i) % 2 == 1) at.polygons.push_back(polygons_[toggled[i]]);
+        for (const std::uint32_t r : grid_.around(point)) {
+            bool inside = false;
+            for (std::uint32_t l = regions_.first_loop[r]; l < regions_.first_loop[r + 1]; ++l)
+                follow(l, point, inside, at.on_edge);
+            if (inside) at.polygons.push_back(regions_.polygon[r]);
         }
         return at;
     }
 
 private:
-    static constexpr std::size_t kBands = 512;
-    static constexpr double kMargin = 1.0 / 64;  // of a band: distances are looked for that far
-    struct Edge {
-        glm::dvec2 from, to;
-        std::uint32_t region;
-    };
+    /// No point of a region, nor one on its edges, is outside the box of its corners, grown.
+    void add(std::uint32_t r) {
+        glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+        const std::uint32_t end = regions_.first_point[regions_.first_loop[r + 1]];
+        for (std::uint32_t k = regions_.first_point[regions_.first_loop[r]]; k < end; ++k) {
+            low = glm::min(low, regions_.points[k]);
+            high = glm::max(high, regions_.points[k]);
+        }
+        grid_.add(low - near_, high + near_, r);
+    }
 
-    [[nodiscard]] std::size_t band_of(double y) const {
-        return static_cast<std::size_t>(std::clamp(y / height_, 0.0, kBands - 1.0));
+    /// Every edge of the loop that the line crosses changes whether the point is inside.
+    void follow(std::uint32_t loop, const glm::dvec2& point, bool& inside, bool& on_edge) const {
+        const std::uint32_t first = regions_.first_point[loop];
+        const std::uint32_t end = regions_.first_point[loop + 1];
+        for (std::uint32_t k = first; k < end; ++k) {
+            const glm::dvec2& from = regions_.points[k];
+            const glm::dvec2& to = regions_.points[k + 1 == end ? first : k + 1];
+            on_edge = on_edge || is_near(from, to, point);
+            if ((from.y > point.y) == (to.y > point.y)) continue;
+            const glm::dvec2 along = to - from, beside = point - from;
+            const double cross = along.x * beside.y - along.y * beside.x;
+            if ((along.y > 0) == (cross < 0)) inside = !inside;
+        }
     }
-    void add(const Edge& edge) {
-        const auto [low, high] = std::minmax(edge.from.y, edge.to.y);
-        const double margin = kMargin * height_;
-        for (std::size_t b = band_of(low - margin); b <= band_of(high + margin); ++b)
-            bands_[b].push_back(edge);
-    }
-    /// Infinite when it is certainly more than `within`.
-    [[nodiscard]] static double distance(const Edge& edge, const glm::dvec2& p, double within) {
-        const glm::dvec2 a = edge.from - p, b = edge.to - p, along = b - a;
-        if (std::min(a.x, b.x) > within || std::max(a.x, b.x) < -within ||
-            std::min(a.y, b.y) > within || std::max(a.y, b.y) < -within)
-            return std::numeric_limits<double>::infinity();
+
+    [[nodiscard]] bool is_near(const glm::dvec2& from, const glm::dvec2& to,
+                               const glm::dvec2& p) const {
+        if (std::min(from.x, to.x) > p.x + near_ || std::max(from.x, to.x) < p.x - near_ ||
+            std::min(from.y, to.y) > p.y + near_ || std::max(from.y, to.y) < p.y - near_)
+            return false;
+        const glm::dvec2 a = from - p, along = to - from;
         const double length2 = along.x * along.x + along.y * along.y;
         const double t =
             std::clamp(-(a.x * along.x + a.y * along.y) / std::max(length2, 1e-300), 0.0, 1.0);
-        return std::hypot(a.x + t * along.x, a.y + t * along.y);
+        return std::hypot(a.x + t * along.x, a.y + t * along.y) <= near_;
     }
 
-    std::vector<std::uint32_t> polygons_;
-    double height_ = 1;
-    std::vector<std::vector<Edge>> bands_;
+    DrawnRegions regions_;  ///< in units
+    double near_;
+    PageCells grid_;
 };
 
 }  // namespace sightline::testing
