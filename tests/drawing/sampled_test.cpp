@@ -161,7 +161,11 @@ bool is_close(const ScreenScene& picture, std::uint32_t a, std::uint32_t b, std:
 }
 
 void compare_to_picture(const Scene& scene, const Camera& camera, PictureScore& score) {
-    const ScreenScene screen = page(scene, camera), picture = must(project(scene, camera));
+    // Both with backs: where a closed mesh cuts through itself, one may be seen.
+    ProjectOptions options;
+    options.cull = Cull::none;
+    const ScreenScene screen = page(scene, camera, options.cull);
+    const ScreenScene picture = must(project(scene, camera, options));
     const CanonicalAnswer canonical(screen);
     const Visibility seen = run("zbuffer", picture);
     const double unit = std::ldexp(1.0, screen.subpixel_bits());
