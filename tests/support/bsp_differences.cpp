@@ -50,6 +50,20 @@ double DifferenceJudge::deviation(std::uint32_t id, const bsp::TreePlane& plane)
     return most;
 }
 
+// Of a screen triangle's corners from the plane that its sheet shares on the screen, in units of z.
+// Between the corners it is no more.
+double DifferenceJudge::deviation_on_screen(std::uint32_t k) const {
+    const std::uint32_t id = screen_.id(k);
+    if (screen_.shared_plane(id) == kNone) return 0;
+    const Corners c = screen_.corners(k);
+    double most = 0;
+    for (const std::uint32_t v : {c.x, c.y, c.z}) {
+        const ScreenPoint& p = screen_.point(v);
+        most = std::max(most, std::abs(evaluate_depth(screen_.plane(id), p.x, p.y) - p.z));
+    }
+    return most;
+}
+
 DifferenceJudge::Surface DifferenceJudge::surface_at(std::uint32_t id, std::int32_t x,
                                                      std::int32_t y) const {
     Surface s;
@@ -59,6 +73,7 @@ DifferenceJudge::Surface DifferenceJudge::surface_at(std::uint32_t id, std::int3
         const OrientedTriangle t(screen_.point(c.x), screen_.point(c.y), screen_.point(c.z));
         if (!covers(t, x, y)) continue;
         s.covers = s.surely = true;
+        s.screen = deviation_on_screen(k);
         // The true edge lies within half a unit in x and in y, so it may leave the sample out.
         for (const auto& [p, q] : {std::pair(t.p, t.q), std::pair(t.q, t.r), std::pair(t.r, t.p)})
             if (2 * side(p.x, p.y, q.x, q.y, x, y) <= std::abs(q.x - p.x) + std::abs(q.y - p.y))
@@ -68,7 +83,7 @@ DifferenceJudge::Surface DifferenceJudge::surface_at(std::uint32_t id, std::int3
     s.z = evaluate_depth(screen_.plane(id), x, y);
     const bsp::TreePlane plane = surfaces_.plane(id);
     const glm::dvec2 g = glm::abs(gradient(plane));
-    s.screen = 0.5 + 0.5 * (g.x + g.y);
+    s.screen += 0.5 + 0.5 * (g.x + g.y);
     const double moved = (bsp::kWorldTerm + deviation(id, plane)) * grid_.step;
     const double scale = camera.pixels_per_unit() * std::ldexp(1.0, screen_.subpixel_bits());
     double dx = scale * moved, dy = dx, dz = std::abs(transform_.z_scale) * moved;

@@ -5,6 +5,8 @@
 // depths bounds their distance. With the true gradients gx, gy of a plane on the screen:
 //
 //   the screen's grid  half a unit in x, y and z:       1/2 + (|gx| + |gy|) / 2
+//                      and for a face of a sheet how far the plane that its sheet shares on the
+//                      screen, through three snapped corners, passes by those of the face.
 //   the world's term   kWorldTerm steps in the world, as derived in bsp_tree.hpp, and for a face of
 //                      a sheet how far it stands off the plane that its sheet shares. Moved by that
 //                      much, a point moves by some dx, dy, dz on the screen:
@@ -50,6 +52,7 @@ private:
     [[nodiscard]] Surface surface_at(std::uint32_t id, std::int32_t x, std::int32_t y) const;
     [[nodiscard]] glm::dvec2 gradient(const bsp::TreePlane& plane) const;
     [[nodiscard]] double deviation(std::uint32_t id, const bsp::TreePlane& plane) const;
+    [[nodiscard]] double deviation_on_screen(std::uint32_t k) const;
 
     const ScreenScene& screen_;
     ScreenTransform transform_;
