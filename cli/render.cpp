@@ -54,6 +54,30 @@ void read_layers(OptionReader& reader, RenderOptions& options) {
     }
 }
 
+/// After the outputs, the algorithm and --samples.
+void read_deep(OptionReader& reader, RenderOptions& options) {
+    options.deep = reader.arguments().has("--deep");
+    if (!options.deep) return;
+    const auto color = std::ranges::find_if(
+        options.outputs, [](const PictureOutput& p) { return p.content == PictureContent::color; });
+    if (color == options.outputs.end() || color->output.format != ImageFormat::exr) {
+        reader.fail(wrong_use("--deep needs an EXR picture; write to a name like -o picture.exr"));
+    } else if (options.algorithm->open_fragments == nullptr) {
+        reader.fail(wrong_use("--deep: '{}' keeps one surface a sample; take --algorithm abuffer",
+                              options.algorithm->name));
+    } else if (!options.by_area) {
+        reader.fail(
+            wrong_use("--deep: deep pictures hold areas, not samples; leave out --samples"));
+    } else if (options.shading && !antialiases(*options.algorithm, *options.shading)) {
+        reader.fail(
+            wrong_use("--deep: --shading {} shows numbers, which have no layers; take "
+                      "another shading",
+                      name_of(*options.shading)));
+    } else if (options.layers.normals || options.layers.ids) {
+        reader.fail(wrong_use("--aov: a deep picture has ids and no normals; leave it out"));
+    }
+}
+
 void read_outputs(OptionReader& reader, RenderOptions& options) {
     std::vector<Output> outputs;
     const auto read = [&](PictureContent content, std::string_view option, auto formats) {
@@ -81,6 +105,7 @@ void read_outputs(OptionReader& reader, RenderOptions& options) {
                       "picture to a file"));
     }
     read_layers(reader, options);
+    read_deep(reader, options);
 }
 
 Result<RenderOptions> read_options(const Arguments& arguments) {
@@ -158,7 +183,8 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"shading", "shading", name_of(shading), ""},
         {"width", "width", options.resolution.width, "pixels"},
         {"height", "height", options.resolution.height, "pixels"},
-        {"samples", "samples a pixel", options.per_axis * options.per_axis, ""},
+        {"samples", "samples a pixel", options.by_area ? 0 : options.per_axis * options.per_axis,
+         ""},
         {"objects", "objects", std::uint64_t{scene.objects.size()}, ""},
         {"polygons", "polygons", scene.counts.polygons, ""},
         {"concave_polygons", "concave polygons", scene.counts.concave_polygons, ""},
@@ -231,13 +257,15 @@ constexpr std::array kOutputRows = {
     Option{"--ids", "FILE", "number of the visible triangle: .npy, .exr or .png"},
     Option{"--normals", "FILE", "normals in the world: .npy, .exr or .png"},
     Option{"--mask", "FILE", "where something is seen: .npy or .png"},
+    Option{"--deep", "", "an EXR with all surfaces of each pixel, not only what they make"},
     Option{"--aov", "LIST", "more channels of an EXR picture: normals,ids"},
 };
 
 const std::array kLookRows = {
     Option{"--algorithm", "NAME", "how visibility is decided ('sightline algorithms' lists them)"},
     kCullOption,
-    Option{"--samples", "N", "samples a pixel: 1 (default), 4, 16 or 64"},
+    Option{"--samples", "N",
+           "samples a pixel: 1, 4, 16 or 64 (default: 1; abuffer weighs areas instead)"},
     Option{"--shading", "NAME",
            "flat, gouraud, phong, unlit, depth, normals, ids (default: phong where the file has "
            "normals, else flat)"},

@@ -85,6 +85,7 @@ void read_size(OptionReader& reader, RenderOptions& options) {
 
     const std::string expected = "a square grid of samples: 1, 4, 16 or 64";
     const auto samples = reader.count("--samples", 1, kMaxPerAxis * kMaxPerAxis, expected);
+    options.by_area = !samples && options.algorithm->open_fragments != nullptr;
     if (!samples) return;
     const auto n =
         static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(*samples))));
@@ -109,13 +110,15 @@ Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
         const auto picture = std::ranges::find_if(
             pictures, [&](const PictureOutput& p) { return p.output.option == output.option; });
         files.push_back({picture->content, batch.path(i), output.format, options.layers.normals,
-                         options.layers.ids});
+                         options.layers.ids,
+                         options.deep && picture->content == PictureContent::color});
         if (output.format == ImageFormat::exr) use_exr_threads(options.common.threads);
     }
     Drawn drawn;
     StageWatch watch(drawn, progress, options.resolution.height);
     const DrawOptions drawing{
         options.per_axis,
+        options.by_area,
         {view.shading, linear_color(options.background), options.common.threads},
         &drawn.counters,
         [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); },

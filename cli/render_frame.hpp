@@ -52,6 +52,8 @@ struct RenderOptions {
     const Algorithm* algorithm = nullptr;
     Cull cull = Cull::automatic;
     std::uint32_t per_axis = 1;
+    bool by_area = false;  ///< instead of samples
+    bool deep = false;
     std::optional<Shading> shading;
     double crease_angle = 30;
     glm::u8vec4 background{255};

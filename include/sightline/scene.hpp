@@ -55,6 +55,8 @@ struct Object {
     /// Every edge is shared by exactly two faces that run along it in opposite directions, and
     /// every connected part encloses a positive volume: only then may back faces be removed.
     bool closed = false;
+    /// One of its vertex colours lets something shine through.
+    bool translucent_vertices = false;
 };
 
 /// Axis-aligned box. Empty when lo > hi.
@@ -199,6 +201,13 @@ void finish_scene(Scene& scene);
 
 /// One byte a triangle, not 0: it moves. Empty when the scene has no motions.
 [[nodiscard]] std::vector<std::uint8_t> moving_triangles(const Scene& scene);
+
+/// Whether something shines through an object: its material, or one of its vertex colours, is not
+/// opaque.
+[[nodiscard]] bool is_translucent(const Scene& scene, const Object& object);
+
+/// One byte a triangle, not 0: something shines through it. Empty when nothing does.
+[[nodiscard]] std::vector<std::uint8_t> translucent_triangles(const Scene& scene);
 
 /// Appends a quadric with an object and a material of its own. Precondition: all triangles are in
 /// the scene. finish_scene() is due afterwards.

@@ -39,6 +39,10 @@ enum class Shading {
 /// colours that are shown, not numbers.
 [[nodiscard]] bool blends(const Algorithm& algorithm, Shading shading, const Scene& scene);
 
+/// Whether draw() can weigh colours by area: the algorithm keeps fragments, and it is colours that
+/// are shown.
+[[nodiscard]] bool antialiases(const Algorithm& algorithm, Shading shading);
+
 struct ShadeOptions {
     Shading shading = Shading::flat;
     glm::vec4 background{1, 1, 1, 1};  ///< linear, premultiplied
@@ -86,6 +90,8 @@ struct PictureFile {
     std::string path;
     ImageFormat format = ImageFormat::png;
     bool add_normals = false, add_ids = false;  ///< further layers of a colour EXR
+    /// A colour EXR with all surfaces of each pixel, as samples of a deep picture.
+    bool deep = false;
 };
 
 /// What draw() is about to do, on the thread that called it. A PNG is shaded while it is written.
@@ -93,6 +99,9 @@ enum class DrawStage { resolve, shade, write };
 
 struct DrawOptions {
     std::uint32_t samples_per_axis = 1;  ///< of colours; everything else is that at the centres
+    /// Colours are weighed by the area that surfaces cover, where antialiases() says so; the
+    /// samples don't matter then.
+    bool by_area = false;
     ShadeOptions shading;
     /// Appended to, when given: what the algorithm did, for the colours if there are any.
     std::vector<Counter>* counters = nullptr;
@@ -110,7 +119,8 @@ struct DrawOptions {
 /// Every group goes to the files in their order; after the last one each is completed before the
 /// next gets its rows, so a stream that stands last is touched when the others are safe, if the
 /// picture is one group. After an error files completed before stay.
-/// Errors: as of resolve() and the write_* functions; bad_option for a mask in an EXR.
+/// Errors: as of resolve() and the write_* functions; bad_option for a mask in an EXR, and for a
+/// deep file where colours are not weighed by area.
 [[nodiscard]] Status draw(const ScreenScene& screen, const Algorithm& algorithm,
                           const DrawOptions& options, std::span<const PictureFile> files);
 

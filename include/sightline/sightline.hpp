@@ -6,6 +6,7 @@
 #include "sightline/camera.hpp"        // IWYU pragma: export
 #include "sightline/drawing.hpp"       // IWYU pragma: export
 #include "sightline/error.hpp"         // IWYU pragma: export
+#include "sightline/fragments.hpp"     // IWYU pragma: export
 #include "sightline/image.hpp"         // IWYU pragma: export
 #include "sightline/load.hpp"          // IWYU pragma: export
 #include "sightline/order.hpp"         // IWYU pragma: export

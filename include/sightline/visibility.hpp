@@ -166,6 +166,8 @@ public:
     virtual void report() = 0;
 };
 
+class FragmentSource;
+
 /// Where an algorithm decides (Sutherland, Sproull, Schumacker 1974).
 enum class Space { image, object, list_priority };
 
@@ -187,6 +189,10 @@ struct Algorithm {
     /// ones can be blended.
     std::unique_ptr<LayerSource> (*open_layers)(const ScreenScene&, const SampleGrid&,
                                                 const ResolveOptions&) = nullptr;
+    /// Set where the algorithm keeps what is in a pixel between its samples; see
+    /// sightline/fragments.hpp.
+    Result<std::unique_ptr<FragmentSource>> (*open_fragments)(const ScreenScene&,
+                                                              const ResolveOptions&) = nullptr;
     /// Set for list-priority algorithms; see sightline/order.hpp.
     PieceOrder (*order)(const ScreenScene&, const ResolveOptions&) = nullptr;
 };

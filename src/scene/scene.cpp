@@ -15,6 +15,7 @@
 #include "scene/motion.hpp"
 #include "scene/sheets.hpp"
 #include "scene/topology.hpp"
+#include "scene/translucency.hpp"
 
 namespace sightline {
 namespace {
@@ -63,6 +64,7 @@ void derive(Scene& scene, bool joined) {
     scene.counts.polygons =
         std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
                         [](std::uint64_t sum, const Object& o) { return sum + o.polygon_count; });
+    find_translucent_vertices(scene);
     // Neither looks at what the other finds.
     tbb::parallel_invoke([&] { find_closed_objects(scene, joined); }, [&] { build_sheets(scene); });
 }

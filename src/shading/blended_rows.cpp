@@ -14,8 +14,10 @@ namespace {
 class BlendSink final : public RunSink {
 public:
     BlendSink(const ScreenScene& screen, const SampleUnits& units, const SampleShader& shader,
-              glm::vec4 background, std::int32_t first_row, std::int32_t rows)
+              const std::vector<std::uint8_t>& translucent, glm::vec4 background,
+              std::int32_t first_row, std::int32_t rows)
         : scene_(screen.scene()),
+          translucent_(translucent),
           units_(units),
           shader_(shader),
           cache_(shader),
@@ -28,19 +30,22 @@ public:
         const std::size_t start = static_cast<std::size_t>(run.row - first_row_) * width();
         std::uint32_t* owners = owners_.data() + start;
         glm::vec4* colors = colors_.data() + start;
-        const float opacity = material_of(scene_, run.id).opacity;
+        const bool translucent = !translucent_.empty() && translucent_[run.id] != 0;
         over_.paint(run, owners, [&](std::int32_t first, std::int32_t end) {
             // Nobody is hidden by a translucent owner, so it need not be remembered.
-            std::fill(owners + first, owners + end, opacity < 1 ? kNone : run.id);
+            std::fill(owners + first, owners + end, translucent ? kNone : run.id);
             if (const PixelColor* constant = cache_.constant_color(run.id)) {
-                const glm::vec4 color = constant->linear;
-                blend(colors, first, end, opacity, [&](std::int32_t) { return color; });
+                const float opacity = material_of(scene_, run.id).opacity;
+                for (std::int32_t i = first; i < end; ++i)
+                    blend(colors[i], constant->linear, opacity);
                 return;
             }
             const ShadedFace& face = cache_.face(run.id);
-            blend(colors, first, end, opacity, [&](std::int32_t i) {
-                return shader_.varying_color(face, units_.position(i), units_.position(run.row));
-            });
+            const std::int32_t y = units_.position(run.row);
+            for (std::int32_t i = first; i < end; ++i) {
+                const std::int32_t x = units_.position(i);
+                blend(colors[i], shader_.varying_color(face, x, y), shader_.opacity(face, x, y));
+            }
         });
     }
 
@@ -50,14 +55,12 @@ private:
     [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(units_.columns); }
 
     /// Porter and Duff's "over"; the colours of surfaces come with alpha 1.
-    template <class ColorAt>
-    static void blend(glm::vec4* colors, std::int32_t first, std::int32_t end, float opacity,
-                      const ColorAt& color_at) {
-        for (std::int32_t i = first; i < end; ++i)
-            colors[i] = opacity * color_at(i) + (1 - opacity) * colors[i];
+    static void blend(glm::vec4& under, glm::vec4 color, float opacity) {
+        under = opacity * color + (1 - opacity) * under;
     }
 
     const Scene& scene_;
+    const std::vector<std::uint8_t>& translucent_;  // see translucent_triangles()
     SampleUnits units_;
     const SampleShader& shader_;
     FaceCache cache_;
@@ -86,6 +89,7 @@ BlendedRows::BlendedRows(const ScreenScene& screen, const SampleGrid& grid,
       grid_(grid),
       units_(grid, screen.subpixel_bits()),
       shader_(screen, options.shading),
+      translucent_(translucent_triangles(screen.scene())),
       background_(options.background),
       layers_(std::move(layers)) {}
 
@@ -101,7 +105,7 @@ void BlendedRows::resolve_band(std::uint32_t band, glm::vec4* out) {
     const auto height = static_cast<std::int32_t>(layers_->band_rows());
     const std::int32_t first = static_cast<std::int32_t>(band) * height;
     const std::int32_t rows = std::min(units_.rows - first, height);
-    BlendSink sink(screen_, units_, shader_, background_, first, rows);
+    BlendSink sink(screen_, units_, shader_, translucent_, background_, first, rows);
     layers_->visit_band(band, sink);
     const std::uint32_t n = grid_.per_axis, width = grid_.resolution.width;
     const std::size_t columns = grid_.columns();

@@ -11,32 +11,28 @@
 #include <memory>
 #include <vector>
 
+#include "shading/color_rows.hpp"
 #include "shading/sample_shader.hpp"
 #include "sightline/shading.hpp"
 #include "visibility/over.hpp"
 
 namespace sightline {
 
-/// Colours of rows of pixels, made in groups of whole bands.
-class BlendedRows {
+class BlendedRows final : public ColorRows {
 public:
     /// The screen must outlive it.
     BlendedRows(const ScreenScene& screen, const SampleGrid& grid, const ShadeOptions& options,
                 std::unique_ptr<LayerSource> layers);
 
-    /// Rows of pixels of which resolve() takes a multiple.
-    [[nodiscard]] std::uint32_t unit() const { return layers_->band_rows() / grid_.per_axis; }
-
-    /// Holds rows of pixels from now on, on all cores. Precondition: `first` is a multiple of
-    /// unit(), and so is `count` unless the rows are the last ones.
-    void resolve(std::uint32_t first, std::uint32_t count, const ResolveOptions& options);
-
-    /// Row y of those held: linear, premultiplied, averaged over the samples of each pixel.
-    [[nodiscard]] const glm::vec4* row(std::uint32_t y) const {
+    [[nodiscard]] std::uint32_t unit() const override {
+        return layers_->band_rows() / grid_.per_axis;
+    }
+    void resolve(std::uint32_t first, std::uint32_t count, const ResolveOptions& options) override;
+    /// Averaged over the samples of each pixel.
+    [[nodiscard]] const glm::vec4* row(std::uint32_t y) const override {
         return pixels_.data() + std::size_t{y} * grid_.resolution.width;
     }
-
-    [[nodiscard]] LayerSource& layers() { return *layers_; }
+    void report() override { layers_->report(); }
 
 private:
     void resolve_band(std::uint32_t band, glm::vec4* out);
@@ -45,6 +41,7 @@ private:
     SampleGrid grid_;
     SampleUnits units_;
     SampleShader shader_;
+    std::vector<std::uint8_t> translucent_;
     glm::vec4 background_;
     std::unique_ptr<LayerSource> layers_;
     std::vector<glm::vec4> pixels_;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "shading/antialiased_rows.hpp"
 #include "shading/blended_rows.hpp"
 #include "shading/draw_groups.hpp"
 #include "shading/picture_sink.hpp"
@@ -88,16 +89,20 @@ public:
           resolution_(screen.resolution()),
           height_(resolution_.height) {
         const auto needs_centres = [](const PictureFile& file) {
-            return file.content != PictureContent::color || file.format == ImageFormat::exr;
+            return file.content != PictureContent::color ||
+                   (file.format == ImageFormat::exr && !file.deep);
         };
         const bool color = std::ranges::any_of(
             files, [](const PictureFile& file) { return file.content == PictureContent::color; });
         const bool centres = std::ranges::any_of(files, needs_centres);
         resolving_ = {options.samples_per_axis, options.shading.threads, nullptr, options.counters,
                       options.tree};
-        blends_ = color && blends(algorithm, options.shading.shading, screen.scene());
-        if (color && !blends_) sources_.emplace_back(screen, algorithm, resolving_);
-        if (centres && (blends_ || !(color && options.samples_per_axis == 1))) {
+        const Shading shading = options.shading.shading;
+        by_area_ = color && options.by_area && antialiases(algorithm, shading);
+        blends_ = color && !by_area_ && blends(algorithm, shading, screen.scene());
+        const bool by_rows = by_area_ || blends_;
+        if (color && !by_rows) sources_.emplace_back(screen, algorithm, resolving_);
+        if (centres && (by_rows || !(color && options.samples_per_axis == 1))) {
             ResolveOptions at_centres = resolving_;
             at_centres.samples_per_axis = 1;
             if (color) at_centres.counters = nullptr;
@@ -113,8 +118,9 @@ public:
         const Visibility nothing{{screen.resolution(), 1}, {}, {}};
         const Visibility& samples = sources_.empty() ? nothing : sources_.front().held();
         const Visibility& centres = sources_.empty() ? nothing : sources_.back().held();
-        PictureRows rows(screen, samples, centres, options_.shading, blended_.get());
+        PictureRows rows(screen, samples, centres, options_.shading, colors_.get());
         const SinkSource source{rows,
+                                deep_,
                                 screen.resolution(),
                                 screen.camera().near_plane,
                                 screen.camera().far_plane,
@@ -126,7 +132,7 @@ public:
                 return drawn;
             }
         }
-        if (blended_ != nullptr) blended_->layers().report();
+        if (colors_ != nullptr) colors_->report();
         for (GroupSource& finished : sources_) finished.report();
         return success();
     }
@@ -137,8 +143,17 @@ private:
             auto layers = open_layers(algorithm, screen, resolving_);
             if (!layers) return layers.error();
             const SampleGrid grid{screen.resolution(), options_.samples_per_axis};
-            blended_ =
+            colors_ =
                 std::make_unique<BlendedRows>(screen, grid, options_.shading, std::move(*layers));
+        }
+        if (by_area_) {
+            auto fragments = algorithm.open_fragments(screen, resolving_);
+            if (!fragments) return fragments.error();
+            const bool deep = std::ranges::any_of(files_, &PictureFile::deep);
+            auto rows = std::make_unique<AntialiasedRows>(screen, options_.shading, deep,
+                                                          std::move(*fragments));
+            deep_ = deep ? rows.get() : nullptr;
+            colors_ = std::move(rows);
         }
         for (GroupSource& source : sources_) {
             if (Status done = source.open(); !done) return done;
@@ -152,8 +167,8 @@ private:
 
     [[nodiscard]] std::uint32_t rows_of_group(std::uint32_t wanted) const {
         std::uint64_t unit = 1, samples = 0;
-        if (blended_ != nullptr) {
-            unit = blended_->unit();
+        if (colors_ != nullptr) {
+            unit = colors_->unit();
             samples = 2 * std::uint64_t{resolution_.width};  // 16 bytes a pixel
         }
         for (const GroupSource& source : sources_) {
@@ -172,7 +187,7 @@ private:
     /// them.
     [[nodiscard]] Status draw_group(const SinkSource& source, std::uint32_t count) {
         enter(DrawStage::resolve);
-        if (blended_ != nullptr) blended_->resolve(done_, count, resolving_);
+        if (colors_ != nullptr) colors_->resolve(done_, count, resolving_);
         for (GroupSource& samples : sources_) {
             if (Status done = samples.resolve(done_, count); !done) return done;
         }
@@ -195,9 +210,10 @@ private:
     Resolution resolution_;
     std::uint32_t height_, done_ = 0;
     ResolveOptions resolving_;  // of the colours
-    bool blends_ = false;
-    std::unique_ptr<BlendedRows> blended_;  // the colours, where translucent surfaces are blended
-    std::vector<GroupSource> sources_;      // of the colours, of the centres, or of both in one
+    bool blends_ = false, by_area_ = false;
+    std::unique_ptr<ColorRows> colors_;  // where they are not those of one triangle a sample
+    AntialiasedRows* deep_ = nullptr;    // the same, when it has deep samples as well
+    std::vector<GroupSource> sources_;   // of the colours, of the centres, or of both in one
     std::vector<std::unique_ptr<PictureSink>> sinks_;
 };
 

@@ -12,7 +12,7 @@
 
 #include "image/png_rows.hpp"
 #include "math/arena.hpp"
-#include "shading/blended_rows.hpp"
+#include "shading/color_rows.hpp"
 #include "shading/row_maps.hpp"
 #include "shading/row_shader.hpp"
 #include "sightline/shading.hpp"
@@ -24,25 +24,25 @@ namespace sightline {
 /// be set before it is made.
 class PictureRows {
 public:
-    /// `samples` is that of the colours unless they come from `blended`; `centres` has one sample
+    /// `samples` is that of the colours unless they come from `colors`; `centres` has one sample
     /// a pixel.
     PictureRows(const ScreenScene& screen, const Visibility& samples, const Visibility& centres,
-                const ShadeOptions& options, const BlendedRows* blended = nullptr)
+                const ShadeOptions& options, const ColorRows* colors = nullptr)
         : shader_(screen, samples, options),
           maps_(screen, centres, is_smooth(options.shading)),
           caches_([this] { return shader_.make_cache(); }),
-          blended_(blended),
+          colors_(colors),
           width_(samples.grid.resolution.width) {}
 
     void color(std::uint32_t y, glm::vec4* out) {
-        if (blended_ != nullptr)
-            std::copy_n(blended_->row(y), width_, out);
+        if (colors_ != nullptr)
+            std::copy_n(colors_->row(y), width_, out);
         else
             shader_.shade(y, caches_.local(), out);
     }
     void rgba8(std::uint32_t y, std::array<std::uint8_t, 4>* out) {
-        if (blended_ != nullptr)
-            std::transform(blended_->row(y), blended_->row(y) + width_, out, color_to_rgba8);
+        if (colors_ != nullptr)
+            std::transform(colors_->row(y), colors_->row(y) + width_, out, color_to_rgba8);
         else
             shader_.shade_rgba8(y, caches_.local(), out);
     }
@@ -52,7 +52,7 @@ private:
     RowShader shader_;
     RowMaps maps_;
     tbb::enumerable_thread_specific<FaceCache> caches_;
-    const BlendedRows* blended_;
+    const ColorRows* colors_;
     std::uint32_t width_;
 };
 

@@ -226,6 +226,37 @@ private:
     Strip<std::uint32_t> triangles_{source_, map_row(source_, &RowMaps::triangles)};
 };
 
+/// All samples of the pixels.
+class DeepSink final : public PictureSink {
+public:
+    DeepSink(DeepExrWriter writer, const SinkSource& source)
+        : writer_(std::move(writer)), source_(source) {}
+
+    Status append(std::uint32_t, std::uint32_t count) override {
+        return for_strips(source_, count, [&](std::uint32_t first, std::uint32_t rows) {
+            source_.on_stage(DrawStage::write);
+            return writer_.write_rows(source_.deep->deep_rows(first, rows), rows);
+        });
+    }
+    Status finish() override { return writer_.finish(); }
+
+private:
+    DeepExrWriter writer_;
+    const SinkSource& source_;
+};
+
+SinkResult open_deep(const PictureFile& file, const SinkSource& source) {
+    if (source.deep == nullptr || file.format != ImageFormat::exr)
+        return Error{ErrorKind::bad_option,
+                     fmt::format("cannot write '{}': only an EXR of colours weighed by area is "
+                                 "deep; take the algorithm abuffer",
+                                 file.path)};
+    Result<DeepExrWriter> writer =
+        DeepExrWriter::create(file.path, source.resolution.width, source.resolution.height);
+    if (!writer) return writer.error();
+    return SinkResult(std::make_unique<DeepSink>(std::move(*writer), source));
+}
+
 SinkResult open_exr(const PictureFile& file, const SinkSource& source) {
     ExrChannels channels;
     const bool color = file.content == PictureContent::color;
@@ -248,6 +279,7 @@ SinkResult open_exr(const PictureFile& file, const SinkSource& source) {
 }  // namespace
 
 Result<std::unique_ptr<PictureSink>> open_sink(const PictureFile& file, const SinkSource& source) {
+    if (file.deep) return open_deep(file, source);
     switch (file.format) {
         case ImageFormat::png:
             return open_png(file, source);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "shading/antialiased_rows.hpp"
 #include "shading/picture_rows.hpp"
 #include "sightline/shading.hpp"
 
@@ -13,9 +14,10 @@ namespace sightline {
 /// What a sink makes its rows of.
 struct SinkSource {
     PictureRows& rows;
-    Resolution resolution;  ///< of the whole picture
-    double near, far;       ///< of a depth PNG
-    int threads = 0;        ///< 0 = all cores
+    AntialiasedRows* deep = nullptr;  ///< of a deep file
+    Resolution resolution;            ///< of the whole picture
+    double near, far;                 ///< of a depth PNG
+    int threads = 0;                  ///< 0 = all cores
     std::function<void(DrawStage)> on_stage;
 };
 

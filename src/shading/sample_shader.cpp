@@ -116,12 +116,23 @@ glm::vec3 SampleShader::quadric_color(const ShadedFace& face, std::int32_t x,
 glm::vec3 SampleShader::base_color(const Surface& surface, glm::dvec3 barycentrics) const {
     if (!surface.colored) return surface.material->base_color;
     const glm::vec3 b(barycentrics);
-    const std::array<glm::vec3, 3>& c = surface.colors;
-    return surface.material->base_color * (b.x * c[0] + b.y * c[1] + b.z * c[2]);
+    const std::array<glm::vec4, 3>& c = surface.colors;
+    return surface.material->base_color *
+           (b.x * glm::vec3(c[0]) + b.y * glm::vec3(c[1]) + b.z * glm::vec3(c[2]));
 }
 
 glm::vec3 SampleShader::depth_color(const ShadedFace& face, std::int32_t x, std::int32_t y) const {
     return color_of_depth(screen_.camera(), screen_.metric_depth(evaluate_depth(face.plane, x, y)));
+}
+
+float SampleShader::opacity(const ShadedFace& face, std::int32_t x, std::int32_t y) const {
+    const Surface& surface = face.surface;
+    const float own = surface.material->opacity;
+    if (!surface.colored) return own;
+    const std::array<glm::vec4, 3>& c = surface.colors;
+    if (c[0].a >= 1 && c[1].a >= 1 && c[2].a >= 1) return own;
+    const glm::vec3 b(surface.barycentrics.at(glm::dvec2(x, y) * pixels_per_unit_of_screen_));
+    return own * std::clamp(b.x * c[0].a + b.y * c[1].a + b.z * c[2].a, 0.0f, 1.0f);
 }
 
 glm::vec4 SampleShader::varying_color(const ShadedFace& face, std::int32_t x,

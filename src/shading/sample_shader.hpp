@@ -34,6 +34,9 @@ public:
     /// At a point in units of the screen, of a face that is not constant; premultiplied.
     [[nodiscard]] glm::vec4 varying_color(const ShadedFace& face, std::int32_t x,
                                           std::int32_t y) const;
+    /// At a point in units of the screen, of a lit or unlit face: that of its material times that
+    /// of its vertices. 0..1.
+    [[nodiscard]] float opacity(const ShadedFace& face, std::int32_t x, std::int32_t y) const;
 
 private:
     [[nodiscard]] glm::vec3 base_color(const Surface& surface, glm::dvec3 barycentrics) const;

@@ -45,19 +45,27 @@ bool is_smooth(Shading shading) { return shading == Shading::gouraud || shading 
 bool has_translucent_faces(const Scene& scene) {
     const std::size_t first_quadric = scene.objects.size() - scene.quadrics.size();
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-        const Object& object = scene.objects[o];
-        const bool is_seen = object.triangle_count > 0 || o >= first_quadric;
-        if (is_seen && object.material < scene.materials.size() &&
-            scene.materials[object.material].opacity < 1)
-            return true;
+        const bool is_seen = scene.objects[o].triangle_count > 0 || o >= first_quadric;
+        if (is_seen && is_translucent(scene, scene.objects[o])) return true;
     }
     return false;
 }
 
+namespace {
+
+bool shows_numbers(Shading shading) {
+    return shading == Shading::depth || shading == Shading::normals || shading == Shading::ids;
+}
+
+}  // namespace
+
 bool blends(const Algorithm& algorithm, Shading shading, const Scene& scene) {
-    const bool shows_numbers =
-        shading == Shading::depth || shading == Shading::normals || shading == Shading::ids;
-    return algorithm.open_layers != nullptr && !shows_numbers && has_translucent_faces(scene);
+    return algorithm.open_layers != nullptr && !shows_numbers(shading) &&
+           has_translucent_faces(scene);
+}
+
+bool antialiases(const Algorithm& algorithm, Shading shading) {
+    return algorithm.open_fragments != nullptr && !shows_numbers(shading);
 }
 
 ColorImage shade(const ScreenScene& screen, const Visibility& visibility,

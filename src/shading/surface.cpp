@@ -113,7 +113,7 @@ void add_attributes(const ScreenScene& screen, std::uint32_t id, Surface& surfac
             surface.normals[i] = on_side_of(surface.normal, unit_or(n, surface.normal));
         }
         if (surface.colored) {
-            surface.colors[i] = glm::vec3(scene.colors[scene.triangle_colors[id][k]]);
+            surface.colors[i] = scene.colors[scene.triangle_colors[id][k]];
         }
     }
 }

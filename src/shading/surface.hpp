@@ -44,7 +44,7 @@ struct Surface {
     BarycentricMap barycentrics;
     /// At the corners, unit, on the same side of the face as `normal`; equal to it unless smooth.
     std::array<glm::dvec3, 3> normals;
-    std::array<glm::vec3, 3> colors;  ///< of the vertices, when colored
+    std::array<glm::vec4, 3> colors;  ///< of the vertices, when colored: straight alpha
 };
 
 /// That of the object of a triangle or quadric; the default one where none is named.

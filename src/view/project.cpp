@@ -97,9 +97,7 @@ private:
     // volume (a guard band cuts off screen, but telling the planes apart here would gain little).
     [[nodiscard]] bool hides_its_back(const Object& object) const {
         if (!object.closed) return false;
-        if (object.material < scene().materials.size() &&
-            scene().materials[object.material].opacity < 1)
-            return false;
+        if (is_translucent(scene(), object)) return false;
         if (!some_outside_) return true;
         for (std::uint32_t t = 0; t < object.triangle_count; ++t)
             if (has_outside_corner(object.first_triangle + t)) return false;

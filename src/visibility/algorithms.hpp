@@ -11,6 +11,7 @@ namespace sightline {
 // Each fills out.ids and out.depth, which resolve() has given the size of out.grid.
 void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
 void resolve_zbuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
+void resolve_abuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
 void resolve_warnock(const ScreenScene& screen, const ResolveOptions& options, Visibility& out);
 
 // The scan-line algorithms make their pictures in bands of rows.
@@ -22,7 +23,7 @@ OpenRows open_painter, open_depth_sort, open_bsp;
 
 using OpenLayers = std::unique_ptr<LayerSource>(const ScreenScene& screen, const SampleGrid& grid,
                                                 const ResolveOptions& options);
-OpenLayers open_depth_sort_layers, open_bsp_layers;
+OpenLayers open_depth_sort_layers, open_bsp_layers, open_abuffer_layers;
 
 using OrderPieces = PieceOrder(const ScreenScene& screen, const ResolveOptions& options);
 OrderPieces order_by_depth_sort, order_by_bsp, order_by_painter;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "sightline/bsp.hpp"
+#include "sightline/fragments.hpp"
 #include "sightline/visibility.hpp"
 #include "visibility/algorithms.hpp"
 #include "visibility/parallel.hpp"
@@ -86,6 +87,14 @@ constexpr std::array kAlgorithms{
               .open_rows = open_bsp,
               .open_layers = open_bsp_layers,
               .order = order_by_bsp},
+    Algorithm{.name = "abuffer",
+              .title = "A-buffer",
+              .citation = "L. Carpenter, The A-buffer, an Antialiased Hidden Surface Method, 1984",
+              .help = "keeps all surfaces of a pixel with their coverage; blends and antialiases",
+              .space = Space::image,
+              .resolve = resolve_abuffer,
+              .open_layers = open_abuffer_layers,
+              .open_fragments = open_fragments},
     Algorithm{.name = "painter",
               .title = "painter's algorithm",
               .citation = "M. Newell, R. Newell, T. Sancha, A Solution to the Hidden Surface "

@@ -104,6 +104,13 @@ void append_faces(const aiMesh& from, SoupMesh& mesh, std::uint64_t& ignored) {
     }
 }
 
+/// glTF materials that don't blend take no alpha from the vertices either.
+bool ignores_alpha(const aiMaterial& material) {
+    aiString mode;
+    return material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS &&
+           std::string_view(mode.C_Str()) != "BLEND";
+}
+
 SoupMesh mesh_of(const aiMesh& from, std::uint64_t& ignored) {
     SoupMesh mesh;
     mesh.name = from.mName.C_Str();
@@ -159,6 +166,8 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
         const aiMesh& mesh = *scene.mMeshes[i];
         soup.meshes.push_back(mesh_of(mesh, soup.ignored_primitives));
         if (mesh.mMaterialIndex < numbers.size()) {
+            if (ignores_alpha(*scene.mMaterials[mesh.mMaterialIndex]))
+                for (glm::vec4& color : soup.meshes.back().colors) color.a = 1;
             soup.meshes.back().material = numbers[mesh.mMaterialIndex];
         }
     }
