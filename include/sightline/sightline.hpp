@@ -1,9 +1,10 @@
 // Everything of the library: scene, camera, canonical screen scene, visibility, order, shading,
-// pictures, drawings.
+// pictures and how they are joined, drawings.
 #pragma once
 
 #include "sightline/bsp.hpp"           // IWYU pragma: export
 #include "sightline/camera.hpp"        // IWYU pragma: export
+#include "sightline/composite.hpp"     // IWYU pragma: export
 #include "sightline/drawing.hpp"       // IWYU pragma: export
 #include "sightline/error.hpp"         // IWYU pragma: export
 #include "sightline/fragments.hpp"     // IWYU pragma: export

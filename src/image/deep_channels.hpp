@@ -38,8 +38,10 @@ inline constexpr std::array<DeepChannel, 8> kDeepChannels = {{
 /// For OpenEXR, which wants an address for every pixel in every channel.
 class DeepAddresses {
 public:
-    /// The samples of all pixels stand one after the other.
+    /// The samples of all pixels stand one after the other; null where there are none.
     void point_to(std::span<const std::uint32_t> counts, const DeepSample* samples) {
+        static const DeepSample kNowhere;
+        if (samples == nullptr) samples = &kNowhere;
         for (std::size_t k = 0; k < kDeepChannels.size(); ++k) {
             const char* at = reinterpret_cast<const char*>(samples) + kDeepChannels[k].offset;
             pointers_[k].resize(counts.size());
