@@ -9,8 +9,8 @@
 namespace sightline::cli {
 namespace {
 
-constexpr std::array<const Command*, 7> kCommands = {&kRender,     &kDraw,    &kVisible, &kInfo,
-                                                     &kAlgorithms, &kCompare, &kBench};
+constexpr std::array<const Command*, 8> kCommands = {&kRender, &kDraw,       &kVisible, &kComposite,
+                                                     &kInfo,   &kAlgorithms, &kCompare, &kBench};
 
 constexpr std::array kProgramExamples = {
     Example{"sightline render bunny.obj -o bunny.png", "a picture with the whole model in view"},

@@ -311,7 +311,7 @@ TEST(CompositeReader, ADeepFileComesBackAsItWas) {
     // Joined with nothing, it is written with the same bytes.
     const auto again = composite({*read});
     ASSERT_TRUE(write_deep_exr(folder.file("b.exr"), std::get<DeepImage>(*again)).ok());
-    EXPECT_EQ(read_file(folder.file("a.exr")), read_file(folder.file("b.exr")));
+    EXPECT_TRUE(read_file(folder.file("a.exr")) == read_file(folder.file("b.exr")));
 }
 
 TEST(CompositeReader, AFlatFileComesBackAsItWas) {
@@ -339,7 +339,7 @@ TEST(CompositeReader, AFlatFileComesBackAsItWas) {
     EXPECT_EQ(back.triangles->pixels, flat.triangles->pixels);
     EXPECT_EQ(back.placement.origin, glm::ivec2(4, -9));
     ASSERT_TRUE(write_exr(folder.file("b.exr"), layers_of(back)).ok());
-    EXPECT_EQ(read_file(folder.file("a.exr")), read_file(folder.file("b.exr")));
+    EXPECT_TRUE(read_file(folder.file("a.exr")) == read_file(folder.file("b.exr")));
 }
 
 /// A tiled file of 50x20 pixels with float colours, half depth and no alpha, beginning at (-7, 3).
