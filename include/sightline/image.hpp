@@ -94,6 +94,8 @@ struct DeepSample {
     float z = 0, z_back = 0;                     ///< metric, along the gaze
     glm::vec4 color{0, 0, 0, 0};                 ///< linear light, premultiplied alpha
     std::uint32_t object = ~0u, triangle = ~0u;  ///< kNone = not known
+
+    bool operator==(const DeepSample&) const = default;
 };
 
 /// A picture with any number of samples in each pixel, row by row from the top.
