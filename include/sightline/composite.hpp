@@ -58,8 +58,8 @@ struct CompositeOptions {
 /// A merged sample has the ids of the one that absorbs most, of equals those of the first. Samples
 /// without a depth (NaN) are dropped.
 ///
-/// Precondition: at least one picture. Errors (bad_input): flat and deep ones together, different
-/// sizes or places.
+/// Precondition: at least one picture. Errors: bad_input for flat and deep ones together, different
+/// sizes or places; io when memory is short.
 [[nodiscard]] Result<ExrPicture> composite(std::vector<ExrPicture> pictures,
                                            const CompositeOptions& options = {});
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -159,8 +160,14 @@ ExrLayers layers_of(const FlatPicture& picture) {
 
 Result<ExrPicture> composite(std::vector<ExrPicture> pictures, const CompositeOptions& options) {
     if (auto error = first_misfit(pictures, options)) return std::move(*error);
-    if (shape_of(pictures[0]).deep) return ExrPicture(join_all_deep(pictures, options));
-    return ExrPicture(join_flat(pictures, options.taken));
+    try {
+        if (shape_of(pictures[0]).deep) return ExrPicture(join_all_deep(pictures, options));
+        return ExrPicture(join_flat(pictures, options.taken));
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorKind::io, fmt::format("not enough memory to join '{}' with {} more; give "
+                                                "fewer or smaller files",
+                                                name_of(options, 0), pictures.size() - 1)};
+    }
 }
 
 }  // namespace sightline

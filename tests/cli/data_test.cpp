@@ -32,7 +32,7 @@ TEST_F(Data, HelpOfTheProgramAndOfEachCommand) {
     EXPECT_EQ(program.status, 0);
     EXPECT_EQ(program.err, "");
     for (const char* name :
-         {"render", "draw", "visible", "info", "algorithms", "compare", "bench"}) {
+         {"render", "draw", "visible", "composite", "info", "algorithms", "compare", "bench"}) {
         EXPECT_NE(program.out.find(name), std::string::npos);
         for (const char* flag : {"--help", "-h"}) {
             const Outcome help = run({name, flag});
