@@ -1,5 +1,5 @@
-// --opacity: a material's name changes the material, an object's name gives the object a material
-// of its own, so that others that share it stay as they are.
+// --opacity and --holdout: a material's name changes the material, an object's name gives the
+// object a material of its own, so that others that share it stay as they are.
 #include "materials.hpp"
 
 #include <algorithm>
@@ -10,25 +10,27 @@
 namespace sightline::cli {
 namespace {
 
-Error unknown_name(const Scene& scene, const std::string& name) {
+Error unknown_name(const Scene& scene, std::string_view option, const std::string& name) {
     std::vector<std::string_view> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
     for (const Object& object : scene.objects) names.push_back(object.name);
-    return wrong_use("--opacity: nothing is called '{}'; {}", name,
+    return wrong_use("{}: nothing is called '{}'; {}", option, name,
                      did_you_mean(name, names, "'sightline info' lists materials and objects"));
 }
 
-bool apply_to_name(Scene& scene, const OpacityRule& rule) {
+/// Changes the materials of a name, and gives the objects of that name changed ones of their own.
+template <class Change>
+bool apply_to_name(Scene& scene, const std::string& name, const Change& change) {
     bool found = false;
     for (Material& material : scene.materials) {
-        if (material.name != rule.name) continue;
-        material.opacity = rule.opacity;
+        if (material.name != name) continue;
+        change(material);
         found = true;
     }
     for (Object& object : scene.objects) {
-        if (object.name != rule.name) continue;
+        if (object.name != name) continue;
         Material own = scene.materials[object.material];
-        own.opacity = rule.opacity;
+        change(own);
         object.material = static_cast<std::uint32_t>(scene.materials.size());
         scene.materials.push_back(std::move(own));
         found = true;
@@ -56,12 +58,20 @@ std::vector<OpacityRule> read_opacity(OptionReader& reader) {
 
 Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules) {
     for (const OpacityRule& rule : rules) {
+        const auto change = [&rule](Material& material) { material.opacity = rule.opacity; };
         if (rule.name.empty()) {
-            for (Material& material : scene.materials) material.opacity = rule.opacity;
-        } else if (!apply_to_name(scene, rule)) {
-            return unknown_name(scene, rule.name);
+            std::ranges::for_each(scene.materials, change);
+        } else if (!apply_to_name(scene, rule.name, change)) {
+            return unknown_name(scene, "--opacity", rule.name);
         }
     }
+    return success();
+}
+
+Status apply_holdouts(Scene& scene, const std::vector<std::string>& names) {
+    const auto change = [](Material& material) { material.holdout = true; };
+    for (const std::string& name : names)
+        if (!apply_to_name(scene, name, change)) return unknown_name(scene, "--holdout", name);
     return success();
 }
 

@@ -1,4 +1,4 @@
-// Changing how a loaded scene looks: --opacity.
+// Changing how a loaded scene looks: --opacity and --holdout.
 #pragma once
 
 #include <string>
@@ -19,5 +19,9 @@ struct OpacityRule {
 
 /// Applies rules in order. Error (bad_option): a name that no material and no object has.
 [[nodiscard]] Status apply_opacity(Scene& scene, const std::vector<OpacityRule>& rules);
+
+/// --holdout: materials and objects that hide what is behind them and are left out themselves.
+/// Error (bad_option): as of apply_opacity().
+[[nodiscard]] Status apply_holdouts(Scene& scene, const std::vector<std::string>& names);
 
 }  // namespace sightline::cli

@@ -6,6 +6,7 @@
 #include "errors.hpp"
 #include "progress.hpp"
 #include "render_frames.hpp"
+#include "render_stream.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "suggest.hpp"
@@ -31,6 +32,8 @@ void read_shading(OptionReader& reader, RenderOptions& options) {
             .value_or(options.crease_angle);
     options.background = reader.color("--background").value_or(options.background);
     options.opacity = read_opacity(reader);
+    for (const std::string& name : reader.arguments().values("--holdout"))
+        options.holdouts.push_back(name);
 }
 
 void read_layers(OptionReader& reader, RenderOptions& options) {
@@ -91,10 +94,11 @@ void read_outputs(OptionReader& reader, RenderOptions& options) {
     read(PictureContent::ids, "--ids", std::span(kPictureFormats));
     read(PictureContent::normals, "--normals", std::span(kPictureFormats));
     read(PictureContent::mask, "--mask", std::span(kMaskFormats));
+    read(PictureContent::matte, "--matte", std::span(kMaskFormats));
     if (outputs.empty()) {
         reader.fail(
             wrong_use("nothing to write; name a file, as in -o picture.png (or --depth, "
-                      "--ids, --normals, --mask)"));
+                      "--ids, --normals, --mask, --matte)"));
     }
     check_frame_outputs(reader, options, outputs);
     const bool to_stdout = std::any_of(outputs.begin(), outputs.end(),
@@ -123,6 +127,7 @@ Result<RenderOptions> read_options(const Arguments& arguments) {
     read_frames(reader, options);
     read_tree_files(reader, options);
     read_outputs(reader, options);
+    read_stream(reader, options);
     if (reader.error()) return *reader.error();
     return options;
 }
@@ -142,6 +147,7 @@ Result<Scene> load(const RenderOptions& options, Progress& progress) {
     Result<Scene> scene = load_scene(options.models.paths, options.models.options);
     if (!scene) return scene;
     if (Status done = apply_opacity(*scene, options.opacity); !done) return done.error();
+    if (Status done = apply_holdouts(*scene, options.holdouts); !done) return done.error();
     if (!options.algorithm->quadrics) {
         tessellate_for(fmt::format("'{}' takes triangles only", options.algorithm->name), *scene,
                        options.common.quiet, progress);
@@ -234,6 +240,13 @@ Result<int> run(const Arguments& arguments) {
     Progress progress(options.common.quiet);
     const Stopwatch watch;
 
+    if (options.stream) {
+        const auto rows = render_stream(options, progress);
+        if (!rows) return rows.error();
+        if (Status told = print_rows(*rows, options.common.stats, options.common.json); !told)
+            return told.error();
+        return 0;
+    }
     progress.stage("loading");
     const Result<Scene> scene = load(options, progress);
     if (!scene) return scene.error();
@@ -257,6 +270,7 @@ constexpr std::array kOutputRows = {
     Option{"--ids", "FILE", "number of the visible triangle: .npy, .exr or .png"},
     Option{"--normals", "FILE", "normals in the world: .npy, .exr or .png"},
     Option{"--mask", "FILE", "where something is seen: .npy or .png"},
+    Option{"--matte", "FILE", "how much of each pixel is covered (its alpha): .npy or .png"},
     Option{"--deep", "", "an EXR with all surfaces of each pixel, not only what they make"},
     Option{"--aov", "LIST", "more channels of an EXR picture: normals,ids"},
 };
@@ -271,6 +285,8 @@ const std::array kLookRows = {
            "normals, else flat)"},
     Option{"--crease-angle", "DEG", "sharper edges split the normals that are made (default: 30)"},
     Option{"--background", "COLOUR", "R,G,B[,A] in 0..255, '#rrggbb[aa]' or none (default: white)"},
+    Option{"--holdout", "NAME",
+           "a material or object that hides others and leaves a hole; repeatable"},
     Option{"--opacity", "[NAME=]F", "0..1, of everything or of one material or object; repeatable"},
 };
 
@@ -287,11 +303,15 @@ constexpr std::array kTreeRows = {
     Option{"--bsp-load", "FILE", "take the tree from a file, made of the same scene"},
 };
 
+constexpr std::array kStreamRows = {
+    Option{"--stream", "", "load and draw one model after the other, to save memory"},
+};
+
 const std::array kGroups = {
     OptionGroup{"Output", kOutputRows},    OptionGroup{"Picture", kLookRows},
     OptionGroup{"Camera", kCameraOptions}, OptionGroup{"Frames", kFrameRows},
     OptionGroup{"BSP tree", kTreeRows},    OptionGroup{"Input", kModelOptions},
-    OptionGroup{"Common", kCommonOptions}};
+    OptionGroup{"Memory", kStreamRows},    OptionGroup{"Common", kCommonOptions}};
 
 constexpr std::array kExamples = {
     Example{"sightline render bunny.obj -o bunny.png", "the whole model, isometric"},
@@ -300,6 +320,10 @@ constexpr std::array kExamples = {
             "an antialiased elevation"},
     Example{"sightline render bunny.obj --direction -1,-1,-1 --depth d.npy --ids i.npy",
             "maps for a data set, without a picture"},
+    Example{"sightline render glass.obj --opacity 0.4 --algorithm abuffer -o glass.png",
+            "transparent, with smooth edges"},
+    Example{"sightline render fg.obj --algorithm abuffer --deep -o fg.exr",
+            "a deep picture, for sightline composite"},
     Example{"cat bunny.ply | sightline render - --format ply -o - --output-format png > b.png",
             "in a pipe"},
     Example{"sightline render bunny.obj --frames 36 --orbit y -o frame_####.png",

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "errors.hpp"
 #include "report.hpp"
@@ -15,13 +16,6 @@ namespace sightline::cli {
 namespace {
 
 constexpr std::uint64_t kMaxPerAxis = 8;
-
-/// Linear light, premultiplied.
-glm::vec4 linear_color(glm::u8vec4 srgb) {
-    const float alpha = static_cast<float>(srgb.a) / 255.0f;
-    return {alpha * from_srgb8(srgb.r), alpha * from_srgb8(srgb.g), alpha * from_srgb8(srgb.b),
-            alpha};
-}
 
 /// An algorithm that makes a picture row by row, for those who chose one that can't.
 std::string_view algorithm_for_large_pictures() {
@@ -99,11 +93,14 @@ void read_size(OptionReader& reader, RenderOptions& options) {
     }
 }
 
-Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
-                           std::span<const PictureOutput> pictures, Progress& progress) {
-    std::vector<Output> outputs;
-    for (const PictureOutput& picture : pictures) outputs.push_back(picture.output);
-    OutputBatch batch(std::move(outputs));
+glm::vec4 linear_color(glm::u8vec4 srgb) {
+    const float alpha = static_cast<float>(srgb.a) / 255.0f;
+    return {alpha * from_srgb8(srgb.r), alpha * from_srgb8(srgb.g), alpha * from_srgb8(srgb.b),
+            alpha};
+}
+
+std::vector<PictureFile> files_of(const RenderOptions& options, const OutputBatch& batch,
+                                  std::span<const PictureOutput> pictures) {
     std::vector<PictureFile> files;
     for (std::size_t i = 0; i < batch.outputs().size(); ++i) {
         const Output& output = batch.outputs()[i];
@@ -114,6 +111,35 @@ Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
                          options.deep && picture->content == PictureContent::color});
         if (output.format == ImageFormat::exr) use_exr_threads(options.common.threads);
     }
+    return files;
+}
+
+namespace {
+
+/// A matte is the alpha of a picture without a background; so it is drawn on its own.
+Status draw_mattes(const View& view, const Algorithm& algorithm, DrawOptions drawing,
+                   std::vector<PictureFile>& files) {
+    const auto is_matte = [](const PictureFile& file) {
+        return file.content == PictureContent::matte;
+    };
+    std::vector<PictureFile> mattes;
+    std::ranges::copy_if(files, std::back_inserter(mattes), is_matte);
+    std::erase_if(files, is_matte);
+    if (mattes.empty()) return success();
+    drawing.shading.shading = Shading::unlit;
+    drawing.shading.background = glm::vec4(0);
+    if (!files.empty()) drawing.counters = nullptr;
+    return draw(view.screen, algorithm, drawing, mattes);
+}
+
+}  // namespace
+
+Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
+                           std::span<const PictureOutput> pictures, Progress& progress) {
+    std::vector<Output> outputs;
+    for (const PictureOutput& picture : pictures) outputs.push_back(picture.output);
+    OutputBatch batch(std::move(outputs));
+    std::vector<PictureFile> files = files_of(options, batch, pictures);
     Drawn drawn;
     StageWatch watch(drawn, progress, options.resolution.height);
     const DrawOptions drawing{
@@ -123,7 +149,9 @@ Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
         &drawn.counters,
         [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); },
         view.tree};
-    Status done = batch.publish(draw(view.screen, *options.algorithm, drawing, files));
+    Status done = draw_mattes(view, *options.algorithm, drawing, files);
+    if (done) done = draw(view.screen, *options.algorithm, drawing, files);
+    done = batch.publish(done);
     watch.leave();
     if (!done) return done.error();
     return drawn;

@@ -58,6 +58,8 @@ struct RenderOptions {
     double crease_angle = 30;
     glm::u8vec4 background{255};
     std::vector<OpacityRule> opacity;
+    std::vector<std::string> holdouts;
+    bool stream = false;
     Layers layers;
     std::vector<PictureOutput> outputs;
     FrameOptions frames;
@@ -79,6 +81,14 @@ struct View {
     Shading shading = Shading::flat;
     const BspTree* tree = nullptr;  ///< for the algorithm that has one
 };
+
+/// The files of a run, under the names that they have until all are complete.
+[[nodiscard]] std::vector<PictureFile> files_of(const RenderOptions& options,
+                                                const OutputBatch& batch,
+                                                std::span<const PictureOutput> pictures);
+
+/// Linear light, premultiplied.
+[[nodiscard]] glm::vec4 linear_color(glm::u8vec4 srgb);
 
 /// Writes the pictures, all of them or none after an error.
 [[nodiscard]] Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,

@@ -32,6 +32,9 @@ struct Material {
     float opacity = 1.0f;                    ///< 1 opaque .. 0 invisible
     float specular = 0.2f;                   ///< Phong's k_s, 0..1
     float shininess = 32.0f;                 ///< Phong's exponent, >= 1
+    /// For compositing: what has it hides what lies behind, and is itself a hole in the picture
+    /// (colour and alpha 0). Depth and ids are as always.
+    bool holdout = false;
 };
 
 enum class LightKind { headlight, directional, point };

@@ -82,6 +82,7 @@ enum class PictureContent {
     ids,      ///< of triangles: png, npy; of objects too: exr
     normals,  ///< png, exr, npy; interpolated where the shading does
     mask,     ///< png, npy
+    matte,    ///< the alpha of the colours, 0..1: png, npy
 };
 
 /// One file that draw() writes; what is in it is said in sightline/image.hpp.

@@ -14,5 +14,6 @@
 #include "sightline/scene.hpp"         // IWYU pragma: export
 #include "sightline/screen_scene.hpp"  // IWYU pragma: export
 #include "sightline/shading.hpp"       // IWYU pragma: export
+#include "sightline/stream.hpp"        // IWYU pragma: export
 #include "sightline/vector.hpp"        // IWYU pragma: export
 #include "sightline/visibility.hpp"    // IWYU pragma: export

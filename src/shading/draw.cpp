@@ -88,12 +88,13 @@ public:
           files_(files),
           resolution_(screen.resolution()),
           height_(resolution_.height) {
-        const auto needs_centres = [](const PictureFile& file) {
-            return file.content != PictureContent::color ||
-                   (file.format == ImageFormat::exr && !file.deep);
+        const auto needs_color = [](const PictureFile& file) {
+            return file.content == PictureContent::color || file.content == PictureContent::matte;
         };
-        const bool color = std::ranges::any_of(
-            files, [](const PictureFile& file) { return file.content == PictureContent::color; });
+        const auto needs_centres = [&](const PictureFile& file) {
+            return !needs_color(file) || (file.format == ImageFormat::exr && !file.deep);
+        };
+        const bool color = std::ranges::any_of(files, needs_color);
         const bool centres = std::ranges::any_of(files, needs_centres);
         resolving_ = {options.samples_per_axis, options.shading.threads, nullptr, options.counters,
                       options.tree};

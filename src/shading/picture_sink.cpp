@@ -96,6 +96,14 @@ SinkResult open_png(const PictureFile& file, const SinkSource& source) {
         case PictureContent::mask:
             return png_sink(file, source, PngLayout::grey8,
                             converted(source, &RowMaps::mask, mask_row_to_grey8));
+        case PictureContent::matte:
+            return png_sink(
+                file, source, PngLayout::grey8, [&source](std::uint32_t y, std::uint8_t* out) {
+                    thread_local std::vector<std::array<std::uint8_t, 4>> row;
+                    row.resize(source.resolution.width);
+                    source.rows.rgba8(y, row.data());
+                    std::ranges::transform(row, out, [](const auto& rgba) { return rgba[3]; });
+                });
     }
     return Error{};
 }
@@ -188,6 +196,13 @@ SinkResult open_npy(const PictureFile& file, const SinkSource& source) {
             return npy_sink<glm::vec3>(file, source, 3, "<f4", map_row(source, &RowMaps::normals));
         case PictureContent::mask:
             return npy_sink<std::uint8_t>(file, source, 0, "|u1", map_row(source, &RowMaps::mask));
+        case PictureContent::matte:
+            return npy_sink<float>(file, source, 0, "<f4", [&source](std::uint32_t y, float* out) {
+                thread_local std::vector<glm::vec4> row;
+                row.resize(source.resolution.width);
+                source.rows.color(y, row.data());
+                std::ranges::transform(row, out, [](const glm::vec4& color) { return color.a; });
+            });
     }
     return Error{};
 }
@@ -265,7 +280,7 @@ SinkResult open_exr(const PictureFile& file, const SinkSource& source) {
     channels.depth = color || file.content == PictureContent::depth;
     channels.normals = file.content == PictureContent::normals || (color && file.add_normals);
     channels.objects = channels.triangles = ids;
-    if (file.content == PictureContent::mask) {
+    if (file.content == PictureContent::mask || file.content == PictureContent::matte) {
         return Error{
             ErrorKind::bad_option,
             fmt::format("cannot write '{}': an EXR holds no mask; choose PNG or NPY", file.path)};

@@ -73,9 +73,16 @@ void SampleShader::prepare(std::uint32_t id, ShadedFace& face) const {
         case Shading::phong:
         case Shading::unlit:
             face.surface = make_surface(screen_, id);
-            prepare_lit(id, face);
+            if (!prepare_holdout(face)) prepare_lit(id, face);
             return;
     }
+}
+
+bool SampleShader::prepare_holdout(ShadedFace& face) {
+    if (!face.surface.material->holdout) return false;
+    face.constant = true;
+    face.color = glm::vec4(0);
+    return true;
 }
 
 void SampleShader::prepare_lit(std::uint32_t id, ShadedFace& face) const {
@@ -99,6 +106,8 @@ void SampleShader::prepare_lit(std::uint32_t id, ShadedFace& face) const {
 
 void SampleShader::prepare_quadric(std::uint32_t id, ShadedFace& face) const {
     face.surface.material = &material_of(screen_.scene(), id);
+    const bool shows_numbers = shading_ == Shading::depth || shading_ == Shading::normals;
+    if (!shows_numbers && prepare_holdout(face)) return;
     face.constant = shading_ == Shading::unlit;
     if (face.constant) face.color = glm::vec4(face.surface.material->base_color, 1.0f);
 }

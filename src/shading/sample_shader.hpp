@@ -42,6 +42,8 @@ private:
     [[nodiscard]] glm::vec3 base_color(const Surface& surface, glm::dvec3 barycentrics) const;
     [[nodiscard]] glm::vec3 depth_color(const ShadedFace& face, std::int32_t x,
                                         std::int32_t y) const;
+    /// Whether the face is a hole in the picture; its colour is then known.
+    static bool prepare_holdout(ShadedFace& face);
     void prepare_lit(std::uint32_t id, ShadedFace& face) const;
     void prepare_quadric(std::uint32_t id, ShadedFace& face) const;
     [[nodiscard]] glm::vec3 quadric_color(const ShadedFace& face, std::int32_t x,

@@ -10,9 +10,9 @@
 // min(r, a) and at least r - (1 - a), whatever the masks say; so a layer that covers the pixel
 // takes all that is left, and the weights of an opaque surface without gaps add up to exactly 1.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "sightline/fragments.hpp"
 #include "visibility/over.hpp"
@@ -78,19 +78,14 @@ private:
     // -- what is seen of each fragment at the samples ------------------------------------------
 
     /// Samples of the pixel at which the order by `near` may be wrong.
-    [[nodiscard]] std::uint64_t contested() const {
-        std::uint64_t seen = 0, found = 0;
-        float far = -std::numeric_limits<float>::infinity();
-        for (std::size_t k = 0; k < fragments_.size(); ++k) {
-            const Fragment& f = fragments_[k];
+    [[nodiscard]] std::uint64_t contested() {
+        std::uint64_t found = 0;
+        reaching_.clear();  // those that are as deep as the fragment at hand
+        for (const Fragment& f : fragments_) {
             if (f.thin) continue;
-            if ((f.mask & seen) != 0 && f.near <= far) {
-                for (std::size_t i = 0; i < k; ++i)
-                    if (!fragments_[i].thin && f.near <= fragments_[i].far)
-                        found |= f.mask & fragments_[i].mask;
-            }
-            seen |= f.mask;
-            far = std::max(far, f.far);
+            std::erase_if(reaching_, [&f](const Fragment* g) { return g->far < f.near; });
+            for (const Fragment* g : reaching_) found |= f.mask & g->mask;
+            reaching_.push_back(&f);
         }
         return found;
     }
@@ -226,16 +221,19 @@ private:
         return exposure_[k] == samples ? f.area : f.area * (exposure_[k] / samples);
     }
 
+    /// What a layer receives of the light that is left, given what the masks say.
+    [[nodiscard]] double balanced(const Layer& layer, double seen) const {
+        // Light that passes a translucent fragment reaches others of the layer as well.
+        if (!layer.opaque && layer.above > 0) return seen;
+        const double most = std::min(shares_.rest, layer.alone + layer.above);
+        const double least = std::min(most, shares_.rest - (kWhole - layer.alone));
+        return std::clamp(seen, std::max(least, 0.0), most);
+    }
+
     void weigh(const Layer& layer) {
         double seen = 0;
         for (std::size_t k = layer.first; k < layer.end; ++k) seen += seen_area(k);
-        const double all = layer.alone + layer.above;
-        const double most = std::min(shares_.rest, all);
-        // Where some of a layer hides other parts of it, and not wholly, the least is not known.
-        const double least = layer.opaque || layer.above == 0
-                                 ? std::min(most, shares_.rest - (kWhole - layer.alone))
-                                 : 0;
-        const double given = std::clamp(seen, std::max(least, 0.0), most);
+        const double given = balanced(layer, seen), all = layer.alone + layer.above;
         const double factor = seen > 0 ? given / seen : 0;
         double sum = 0;
         for (std::size_t k = layer.first; k < layer.end; ++k) {
@@ -243,6 +241,11 @@ private:
                 seen > 0 ? seen_area(k) * factor : fragments_[k].area * (given / all);
             shares_.weights[k] = area * static_cast<double>(opacities_[k]);
             sum += shares_.weights[k];
+        }
+        if (sum > shares_.rest) {
+            for (std::size_t k = layer.first; k < layer.end; ++k)
+                shares_.weights[k] *= shares_.rest / sum;
+            sum = shares_.rest;
         }
         // In an opaque layer nothing is lost to rounding.
         shares_.rest = std::max(0.0, shares_.rest - (layer.opaque ? given : sum));
@@ -287,6 +290,7 @@ private:
     std::vector<double> exposure_;
     std::array<double, kSamples> light_{};
     std::vector<std::size_t> order_;
+    std::vector<const Fragment*> reaching_;
     std::uint32_t object_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "shading/antialiased_rows.hpp"
+#include "shading/blended_rows.hpp"
 #include "support/models.hpp"
 #include "support/nasty.hpp"
 #include "support/scenes.hpp"
@@ -178,6 +179,79 @@ TEST(Antialias, WhiteOnBlackIsWholeAndWhiteOnWhiteIsWhite) {
         const Scene scene = white(must(load_scene(paths)));
         expect_no_seams(scene, must(make_camera({}, scene.bounds, {320, 240})));
     }
+}
+
+ColorImage blended(const ScreenScene& screen, const ShadeOptions& options) {
+    const SampleGrid grid{screen.resolution(), 8};
+    ResolveOptions resolving;
+    resolving.samples_per_axis = 8;
+    BlendedRows rows(screen, grid, options,
+                     must(open_layers(*find_algorithm("depth-sort"), screen, resolving)));
+    rows.resolve(0, grid.resolution.height, resolving);
+    ColorImage image(grid.resolution.width, grid.resolution.height);
+    std::copy_n(rows.row(0), image.pixels.size(), image.pixels.data());
+    return image;
+}
+
+// Triangles of many colours that cross one another.
+Scene tinted_triangles(float opacity) {
+    SceneBuilder b;
+    Random random(17);
+    for (int k = 0; k < 40; ++k) {
+        const glm::dvec3 p = random.point(), q = random.point();
+        b.triangle(p, q, random.point());
+    }
+    Scene scene = b.scene;
+    const Object whole = scene.objects[0];
+    scene.objects.clear();
+    scene.materials.clear();
+    for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+        Object object = whole;
+        object.first_triangle = object.first_polygon = object.material = t;
+        object.triangle_count = object.polygon_count = 1;
+        scene.objects.push_back(object);
+        const auto part = [&random] { return static_cast<float>(random.uniform(0, 1)); };
+        const float red = part(), green = part();
+        scene.materials.push_back(colored({red, green, part()}));
+        scene.materials.back().opacity = opacity;
+    }
+    finish_scene(scene);
+    return scene;
+}
+
+TEST(Antialias, CrossingTranslucentSurfacesAreThoseOfDepthSort) {
+    for (const float opacity : {0.3f, 0.7f, 1.0f}) {
+        const Scene scene = tinted_triangles(opacity);
+        const ScreenScene screen =
+            must(project(scene, page_camera(scene, {80, 80}), {Cull::none, 0}));
+        const ShadeOptions options{Shading::unlit, {1, 1, 1, 1}, 0};
+        EXPECT_LT(rms(antialiased(screen, options), blended(screen, options)), 1) << opacity;
+    }
+}
+
+TEST(Antialias, HoldoutsAreHoles) {
+    Scene scene = tinted_triangles(1);
+    for (Material& material : scene.materials) material.holdout = true;
+    scene.materials[3].holdout = false;
+    const ScreenScene screen = must(project(scene, page_camera(scene, {60, 60}), {Cull::none, 0}));
+    const ShadeOptions options{Shading::unlit, {1, 1, 1, 1}, 0};
+    const ColorImage by_area = antialiased(screen, options), one = sampled(screen, 1, options);
+    const Visibility seen = run("brute", screen);
+    std::uint64_t holes = 0, shown = 0;
+    for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+        if (seen.ids[i] == kNone) {
+            EXPECT_EQ(one.pixels[i], glm::vec4(1));
+        } else if (seen.ids[i] == 3) {
+            ++shown;
+            EXPECT_EQ(one.pixels[i].a, 1);
+        } else {
+            ++holes;
+            EXPECT_EQ(one.pixels[i], glm::vec4(0));
+        }
+        EXPECT_LE(by_area.pixels[i].a, 1);
+    }
+    EXPECT_GT(holes, 500u);
+    EXPECT_GT(shown, 5u);
 }
 
 TEST(Antialias, VertexAlphaIsOpacity) {

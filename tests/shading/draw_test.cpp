@@ -106,6 +106,8 @@ void write_whole(const View& samples, const View& centres, const Files& files) {
             case PictureContent::mask:
                 done = write(mask, png ? write_mask_png(file.path, mask) : success());
                 break;
+            case PictureContent::matte:
+                FAIL() << "no map of its own";
         }
         ASSERT_TRUE(done.ok()) << done.error().message;
     }
