@@ -19,3 +19,13 @@ build/release/bin/sightline compare samples/house.obj --algorithms painter,zbuff
     --difference "$folder/painter-difference.png" --quiet >/dev/null
 build/release/bin/sightline render samples/crossing.obj --opacity 0.5 --algorithm depth-sort \
     --samples 16 -o "$folder/transparency.png"
+# Smooth edges: one sample a pixel, 16, and areas.
+look="--shading unlit --eye 5,2.2,28 --target 0,-0.5,0 --fov 14 --resolution 280x90 --quiet"
+for samples in 1 16; do
+    # shellcheck disable=SC2086 # words
+    build/release/bin/sightline render samples/board.obj $look --samples $samples \
+        -o "$folder/abuffer-$samples.png"
+done
+# shellcheck disable=SC2086 # words
+build/release/bin/sightline render samples/board.obj $look --algorithm abuffer \
+    -o "$folder/abuffer-area.png"

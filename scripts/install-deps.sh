@@ -12,7 +12,7 @@ build_packages='g++ cmake ninja-build pkg-config
     libcairo2-dev libdxflib-dev
     libboost-dev libcli11-dev libfmt-dev nlohmann-json3-dev'
 test_packages='libgtest-dev libpng-dev libembree-dev clang libclang-rt-14-dev llvm
-    ccache'
+    ccache openimageio-tools'
 lint_packages='clang-format clang-tidy'
 
 fail() {

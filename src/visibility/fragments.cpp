@@ -95,7 +95,7 @@ public:
                 const List& list = lists_[index(x, y)];
                 if (list.count == 0) continue;
                 gather(list);
-                drop_hidden();
+                if (may_hide(list)) drop_hidden();
                 counts[Count::kept] += sorted_.size();
                 counts.reaches(Count::deepest, sorted_.size());
                 sink.take(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), sorted_);
@@ -115,6 +115,7 @@ private:
         std::uint64_t mask = 0,
                       area = 0;  ///< of the opaque ones together, the thin ones not in the mask
         std::uint32_t head = kNone, count = 0;
+        std::uint32_t cleared = 0;        ///< count when hidden ones were taken out
         std::uint32_t limit = kLongList;  ///< of count, when hidden ones are looked for
         /// All of the pixel is covered by opaque surfaces that are nowhere deeper than this.
         float closed = std::numeric_limits<float>::infinity();
@@ -236,6 +237,12 @@ private:
         return depth;
     }
 
+    /// Whether opaque fragments may cover the pixel, and nobody has looked since the last one came.
+    static bool may_hide(const List& list) {
+        const bool covered = list.closed < std::numeric_limits<float>::infinity();
+        return covered ? list.count != list.cleared : list.area >= kFullArea;
+    }
+
     /// Takes what is hidden out of a list that has become long.
     void shorten(List& list) {
         gather(list);
@@ -245,7 +252,7 @@ private:
             nodes_[members_[k]].next = list.head;
             list.head = members_[k];
         }
-        list.count = static_cast<std::uint32_t>(sorted_.size());
+        list.count = list.cleared = static_cast<std::uint32_t>(sorted_.size());
         list.limit = std::max(kLongList, 2 * list.count);
     }
 
@@ -281,11 +288,15 @@ public:
 
     void visit_band(std::uint32_t band, FragmentSink& sink) override {
         TileLists lists(screen_);
+        std::vector<Entry> triangles;
         for (std::int32_t column = 0; column < across_; ++column) {
             const auto y = static_cast<std::int32_t>(band) * kTile, x = column * kTile;
             const PixelArea area{x, y, std::min(width_, x + kTile), std::min(height_, y + kTile)};
-            fill(lists, area,
-                 band * static_cast<std::uint32_t>(across_) + static_cast<std::uint32_t>(column));
+            collect(band * static_cast<std::uint32_t>(across_) + static_cast<std::uint32_t>(column),
+                    triangles);
+            if (triangles.empty()) continue;
+            tell_entered(area);
+            fill(lists, area, triangles);
             lists.visit(sink);
         }
         const std::lock_guard lock(mutex_);
@@ -324,37 +335,45 @@ private:
         });
     }
 
-    void fill(TileLists& lists, const PixelArea& area, std::uint32_t tile) const {
-        if (options_.observer != nullptr)
-            options_.observer->step(
-                {StepKind::tile_entered, kNone, kNone, static_cast<std::uint32_t>(area.x0),
-                 static_cast<std::uint32_t>(area.y0), static_cast<std::uint32_t>(area.x1),
-                 static_cast<std::uint32_t>(area.y1)});
-        struct Entry {
-            std::int32_t near;
-            std::uint32_t number;
-        };
-        thread_local std::vector<Entry> order;
-        order.clear();
+    /// A triangle by its number and its nearest corner.
+    struct Entry {
+        std::int32_t near;
+        std::uint32_t number;
+    };
+
+    /// The triangles of a tile, roughly from front to back.
+    void collect(std::uint32_t tile, std::vector<Entry>& triangles) const {
+        triangles.clear();
         for (const Bins<std::uint32_t>& chunk : chunks_) {
             for (const std::uint32_t k : chunk.of(tile)) {
                 const Corners c = screen_.corners(k);
-                order.push_back(
+                triangles.push_back(
                     {std::min({screen_.point(c.x).z, screen_.point(c.y).z, screen_.point(c.z).z}),
                      k});
             }
         }
-        std::sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
+        std::sort(triangles.begin(), triangles.end(), [](const Entry& a, const Entry& b) {
             return a.near != b.near ? a.near < b.near : a.number < b.number;
         });
+    }
+
+    void fill(TileLists& lists, const PixelArea& area, const std::vector<Entry>& triangles) const {
         lists.open(area);
-        for (const Entry& entry : order) {
+        for (const Entry& entry : triangles) {
             const Corners c = screen_.corners(entry.number);
             const std::uint32_t id = screen_.id(entry.number);
             lists.add({screen_.point(c.x), screen_.point(c.y), screen_.point(c.z), id,
                        translucent_.empty() || translucent_[id] == 0, 0},
                       entry.number);
         }
+    }
+
+    void tell_entered(const PixelArea& area) const {
+        if (options_.observer == nullptr) return;
+        options_.observer->step(
+            {StepKind::tile_entered, kNone, kNone, static_cast<std::uint32_t>(area.x0),
+             static_cast<std::uint32_t>(area.y0), static_cast<std::uint32_t>(area.x1),
+             static_cast<std::uint32_t>(area.y1)});
     }
 
     const ScreenScene& screen_;

@@ -13,9 +13,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "sightline/fragments.hpp"
-#include "visibility/over.hpp"
 #include "visibility/sampled_plane.hpp"
 
 namespace sightline {
@@ -45,10 +46,10 @@ struct Layer {
 class PixelResolver::State {
 public:
     explicit State(const ScreenScene& screen)
-        : scene_(screen.scene()),
+        : screen_(screen),
+          scene_(screen.scene()),
           units_({screen.resolution(), kMaskSide}, screen.subpixel_bits()),
-          judge_(screen, units_),
-          planes_(screen, units_) {}
+          judge_(screen, units_) {}
 
     const PixelShares& resolve(std::uint32_t x, std::uint32_t y,
                                std::span<const Fragment> fragments,
@@ -57,11 +58,20 @@ public:
         opacities_ = opacities;
         column_ = static_cast<std::int32_t>(x * kMaskSide);
         row_ = static_cast<std::int32_t>(y * kMaskSide);
+        known_ = 0;
+        while (planes_.size() < fragments.size()) planes_.emplace_back().id = kNone;
         shares_.rest = kWhole;
         shares_.weights.assign(fragments.size(), 0);
         shares_.surfaces.assign(fragments.size(), 0);
-        expose();
         std::uint32_t surface = 0;
+        if (fragments_tile()) {
+            number_surfaces({0, fragments.size()}, surface);
+            std::ranges::transform(fragments, shares_.weights.begin(),
+                                   [](const Fragment& f) { return f.area; });
+            shares_.rest = 0;
+            return shares_;
+        }
+        expose();
         for (std::size_t k = 0; k < fragments.size();) {
             const Layer layer = layer_from(k);
             number_surfaces(layer, surface);
@@ -124,11 +134,8 @@ private:
     }
 
     void expose_at(unsigned sample) {
-        order_.clear();
-        for (std::size_t k = 0; k < fragments_.size(); ++k)
-            if (!fragments_[k].thin && (fragments_[k].mask >> sample & 1) != 0) order_.push_back(k);
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](std::size_t a, std::size_t b) { return is_before(a, b, sample); });
+        order_ = owners_of(sample);
+        sort_at(sample);
         double light = 1;
         for (const std::size_t k : order_) {
             exposure_[k] += light;
@@ -137,30 +144,71 @@ private:
         }
     }
 
+    /// Sorts order_ at a sample. It is nearly sorted already, by `near`, so that exchanging
+    /// neighbours is soon done; where it is not, another way is taken.
+    void sort_at(unsigned sample) {
+        const auto before = [&](std::size_t a, std::size_t b) { return is_before(a, b, sample); };
+        std::size_t moves = 8 * order_.size();
+        for (std::size_t k = 1; k < order_.size(); ++k) {
+            for (std::size_t i = k; i > 0 && before(order_[i], order_[i - 1]); --i, --moves) {
+                if (moves == 0) return std::stable_sort(order_.begin(), order_.end(), before);
+                std::swap(order_[i], order_[i - 1]);
+            }
+        }
+    }
+
     /// What reaches a fragment that covers no sample. The one nearest to it may belong to what lies
     /// beside it: only what its plane, continued to there, lies behind can hide it.
     [[nodiscard]] double light_on_thin(std::size_t thin) {
         const auto sample = static_cast<unsigned>(std::countr_zero(fragments_[thin].mask));
         double light = 1;
-        for (std::size_t k = 0; k < fragments_.size() && light > 0; ++k) {
-            const Fragment& f = fragments_[k];
-            if (f.thin || (f.mask >> sample & 1) == 0) continue;
+        for (const std::size_t k : owners_of(sample)) {
             if (hides(k, thin, sample)) light *= 1 - static_cast<double>(opacities_[k]);
+            if (light <= 0) break;
         }
         return light;
     }
 
+    /// The fragments that cover a sample, by `near`.
+    [[nodiscard]] const std::vector<std::size_t>& owners_of(unsigned sample) {
+        std::vector<std::size_t>& owners = owners_[sample];
+        if ((known_ >> sample & 1) != 0) return owners;
+        known_ |= std::uint64_t{1} << sample;
+        owners.clear();
+        for (std::size_t k = 0; k < fragments_.size(); ++k)
+            if ((fragments_[k].mask >> sample & 1) != 0 && !fragments_[k].thin) owners.push_back(k);
+        return owners;
+    }
+
     [[nodiscard]] bool hides(std::size_t front, std::size_t behind, unsigned sample) {
-        const std::uint32_t shared = planes_.plane(fragments_[front].id).shared;
-        if (shared != kNone && shared == planes_.plane(fragments_[behind].id).shared) return false;
+        const std::uint32_t shared = plane(front).shared;
+        if (shared != kNone && shared == plane(behind).shared) return false;
         return is_before(front, behind, sample);
     }
 
+    /// Of fragment k; most are never asked for theirs.
+    [[nodiscard]] const SampledPlane& plane(std::size_t k) {
+        if (planes_[k].id != fragments_[k].id)
+            planes_[k] = sampled_plane_of(screen_, units_, fragments_[k].id);
+        return planes_[k];
+    }
+
     [[nodiscard]] bool is_before(std::size_t a, std::size_t b, unsigned sample) {
-        const SampledPlane first = planes_.plane(fragments_[a].id);
-        return judge_.before(first, planes_.plane(fragments_[b].id),
+        return judge_.before(plane(a), plane(b),
                              column_ + static_cast<std::int32_t>(sample % kMaskSide),
                              row_ + static_cast<std::int32_t>(sample / kMaskSide));
+    }
+
+    /// Whether they are opaque, don't overlap, and cover the pixel: most pixels are so.
+    [[nodiscard]] bool fragments_tile() const {
+        std::uint64_t mask = 0, area = 0;
+        for (std::size_t k = 0; k < fragments_.size(); ++k) {
+            const Fragment& f = fragments_[k];
+            if (opacities_[k] < 1 || (!f.thin && (f.mask & mask) != 0)) return false;
+            if (!f.thin) mask |= f.mask;
+            area += f.area;
+        }
+        return area == kFullArea;
     }
 
     // -- areas ---------------------------------------------------------------------------------
@@ -279,16 +327,19 @@ private:
         shares_.rest = 0;
     }
 
+    const ScreenScene& screen_;
     const Scene& scene_;
     SampleUnits units_;
     DepthJudge judge_;
-    PlaneCache planes_;
+    std::vector<SampledPlane> planes_;  // see plane(); they may be those of another pixel
     std::span<const Fragment> fragments_;
     std::span<const float> opacities_;
     std::int32_t column_ = 0, row_ = 0;  // of the pixel's first sample
     PixelShares shares_;
     std::vector<double> exposure_;
     std::array<double, kSamples> light_{};
+    std::array<std::vector<std::size_t>, kSamples> owners_;  // of the samples in known_
+    std::uint64_t known_ = 0;
     std::vector<std::size_t> order_;
     std::vector<const Fragment*> reaching_;
     std::uint32_t object_ = 0;

@@ -229,6 +229,22 @@ TEST(Antialias, CrossingTranslucentSurfacesAreThoseOfDepthSort) {
     }
 }
 
+TEST(Antialias, AnyOrderOfTheFileGivesTheSameBytes) {
+    const Scene scene = tinted_triangles(0.6f);
+    std::vector<std::uint32_t> order;
+    Scene other = shuffled(scene, 3, order);
+    other.objects.resize(other.triangle_count());
+    for (std::uint32_t t = 0; t < other.triangle_count(); ++t) {
+        other.objects[t] = scene.objects[order[t]];
+        other.objects[t].first_triangle = t;
+    }
+    const auto picture = [](const Scene& s) {
+        return antialiased(must(project(s, page_camera(s, {96, 96}), {Cull::none, 0})),
+                           {Shading::flat, {1, 1, 1, 1}, 0});
+    };
+    EXPECT_EQ(picture(scene).pixels, picture(other).pixels);
+}
+
 TEST(Antialias, HoldoutsAreHoles) {
     Scene scene = tinted_triangles(1);
     for (Material& material : scene.materials) material.holdout = true;
