@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
-#include <utility>
 
 #include "visibility/algorithms.hpp"
 #include "visibility/counts.hpp"
@@ -48,7 +47,7 @@ public:
           positions_(width_ * static_cast<std::size_t>(rows)) {}
 
     /// All samples that a triangle covers in the band.
-    void add(ActiveTriangle&& triangle, bool translucent) {
+    void add(ActiveTriangle triangle, bool translucent) {
         RowTriangle& rows = triangle.rows;
         const auto number = static_cast<std::uint32_t>(surfaces_.size());
         surfaces_.push_back(triangle.surface);
@@ -179,7 +178,7 @@ public:
             ActiveTriangle triangle(screen_, units_, k, first);
             if (triangle.rows.empty()) continue;
             const bool translucent = !translucent_.empty() && translucent_[screen_.id(k)] != 0;
-            lists.add(std::move(triangle), translucent);
+            lists.add(triangle, translucent);
         }
         lists.visit(sink);
         const std::lock_guard lock(mutex_);

@@ -124,7 +124,8 @@ private:
 
     [[nodiscard]] int bits() const { return screen_.subpixel_bits(); }
     [[nodiscard]] std::size_t index(std::int32_t x, std::int32_t y) const {
-        return static_cast<std::size_t>((y - area_.y0) * kTile + (x - area_.x0));
+        return static_cast<std::size_t>(y - area_.y0) * kTile +
+               static_cast<std::size_t>(x - area_.x0);
     }
 
     void add(const TileTriangle& t, const CoveredTriangle& covered, const SampledPlane& plane,
@@ -165,9 +166,9 @@ private:
     /// z over the samples of the mask lies within these, the rounding to float included.
     void set_depth(const TileTriangle& t, const SampledPlane& plane, std::int32_t x, std::int32_t y,
                    Fragment& fragment) const {
-        constexpr double kHalf = 0.5 * kMaskSide;
-        const double middle = plane.z0 + (plane.gx * (kMaskSide * x + kHalf - 0.5) +
-                                          plane.gy * (kMaskSide * y + kHalf - 0.5));
+        constexpr double kSide = kMaskSide, kHalf = 0.5 * kSide;
+        const double middle = plane.z0 + (plane.gx * (kSide * x + kHalf - 0.5) +
+                                          plane.gy * (kSide * y + kHalf - 0.5));
         const double rise = kHalf * (std::abs(plane.gx) + std::abs(plane.gy)) + plane.slack;
         double near = middle - rise, far = middle + rise;
         // A plane that others share may leave the corners behind.
