@@ -41,10 +41,13 @@ public:
             shader_.shade(y, caches_.local(), out);
     }
     void rgba8(std::uint32_t y, std::array<std::uint8_t, 4>* out) {
-        if (colors_ != nullptr)
-            std::transform(colors_->row(y), colors_->row(y) + width_, out, color_to_rgba8);
-        else
+        if (colors_ == nullptr) {
             shader_.shade_rgba8(y, caches_.local(), out);
+            return;
+        }
+        const glm::vec4* row = colors_->row(y);
+        for (std::uint32_t x = 0; x < width_; ++x)  // neighbours are often equal
+            out[x] = x > 0 && row[x] == row[x - 1] ? out[x - 1] : color_to_rgba8(row[x]);
     }
     [[nodiscard]] const RowMaps& maps() const { return maps_; }
 
