@@ -176,16 +176,41 @@ public:
     }
 
 private:
-    static int shared_corners(const Occluder& o, const Occluder& other) {
-        int shared = 0;
-        for (const std::uint32_t c : o.corners)
-            shared += std::ranges::find(other.corners, c) != other.corners.end() ? 1 : 0;
-        return shared;
+    /// Corners that two triangles share, and where one of them stands.
+    struct Shared {
+        int count = 0;
+        std::size_t own = 0, theirs = 0;
+
+        Shared(const Occluder& o, const Occluder& other) {
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = 0; j < 3; ++j)
+                    if (o.corners[i] == other.corners[j]) ++count, own = i, theirs = j;
+        }
+    };
+
+    /// Whether a triangle lies outside of one of the two sides of another one that meet at a corner
+    /// of both: they have nothing but that corner in common on the page. In a mesh that is so of
+    /// most triangles around a vertex.
+    static bool is_outside(const Occluder& o, std::size_t own, const Occluder& other,
+                           std::size_t theirs) {
+        const ScreenPoint& corner = o.point(own);
+        const std::size_t after = Occluder::next(own), before = Occluder::next(after);
+        const std::size_t first = Occluder::next(theirs), second = Occluder::next(first);
+        const auto beyond = [&](const ScreenPoint& from, const ScreenPoint& to) {
+            const ScreenPoint &s = other.point(first), &t = other.point(second);
+            return side(from.x, from.y, to.x, to.y, s.x, s.y) < 0 &&
+                   side(from.x, from.y, to.x, to.y, t.x, t.y) < 0;
+        };
+        return beyond(corner, o.point(after)) || beyond(o.point(before), corner);
     }
 
     static void test(const Occluder& o, const Occluder& other, Found& found) {
         if (o.sheet != kNone && o.sheet == other.sheet) return;
-        if (shared_corners(o, other) > 1) return;
+        const Shared shared(o, other);
+        if (shared.count > 1) return;
+        if (shared.count == 1 && (is_outside(o, shared.own, other, shared.theirs) ||
+                                  is_outside(other, shared.theirs, o, shared.own)))
+            return;
         const Sides own(o, other.plane);
         if (!own.crossing() && own.zeros() != 2) return;
         const Sides theirs(other, o.plane);
