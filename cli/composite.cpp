@@ -1,9 +1,6 @@
 // `sightline composite`: pictures of one view joined by depth.
 #include "sightline/composite.hpp"
 
-#include <ImfThreading.h>
-#include <tbb/info.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,12 +78,6 @@ struct Summary {
     std::vector<std::uint64_t> taken;  ///< of each file: pixels, or samples of deep files
     std::uint64_t samples = 0;         ///< of the result, if it is deep
 };
-
-/// OpenEXR has a pool of threads of its own, which is the program's to fill.
-void use_exr_threads(int threads) {
-    const int count = threads > 0 ? threads : tbb::info::default_concurrency();
-    if (count > 1) Imf::setGlobalThreadCount(count);
-}
 
 Result<std::vector<ExrPicture>> read_pictures(const std::vector<std::string>& paths,
                                               Progress& progress) {

@@ -3,6 +3,8 @@
 // before the first one is renamed, so that a disk that fills up leaves none of them.
 #include "outputs.hpp"
 
+#include <ImfThreading.h>
+#include <tbb/info.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -111,6 +113,11 @@ Error with_name(Error error, const std::string& staged, const std::string& wante
 }
 
 }  // namespace
+
+void use_exr_threads(int threads) {
+    const int count = threads > 0 ? threads : tbb::info::default_concurrency();
+    if (count > 1) Imf::setGlobalThreadCount(count);
+}
 
 TemporaryFile::TemporaryFile(const fs::path& folder, std::string_view ending) {
     static unsigned counter = 0;

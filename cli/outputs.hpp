@@ -43,6 +43,10 @@ void check_output(OptionReader& reader, const OutputPlace& output,
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,
                    std::span<const std::string> inputs);
 
+/// OpenEXR compresses on a pool of threads of its own, which is the program's to fill: the library
+/// leaves it alone. The bytes are the same. 0 = all cores.
+void use_exr_threads(int threads);
+
 /// A name for a file that must not stay: removed by the destructor and when the program is stopped.
 class TemporaryFile {
 public:

@@ -1,9 +1,6 @@
 // From a projected scene to the files of `sightline render`.
 #include "render_frame.hpp"
 
-#include <ImfThreading.h>
-#include <tbb/info.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -59,13 +56,6 @@ private:
     DrawStage stage_ = DrawStage::resolve;
     Stopwatch watch_;
 };
-
-/// OpenEXR compresses on a pool of its own, which is the program's to fill: the library leaves it
-/// alone. The bytes are the same.
-void use_exr_threads(int threads) {
-    const int count = threads > 0 ? threads : tbb::info::default_concurrency();
-    if (count > 1) Imf::setGlobalThreadCount(count);
-}
 
 }  // namespace
 
