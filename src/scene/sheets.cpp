@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
@@ -140,10 +141,8 @@ private:
             for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
             cells[t] = pack(cell);
         });
-        std::size_t size = 16;
-        while (size < planes_.size()) size *= 2;
-        slots_ = size;
-        first_.assign(size + 1, 0);
+        slot_bits_ = std::max(4, static_cast<int>(std::bit_width(planes_.size())));
+        first_.assign((std::size_t{1} << slot_bits_) + 1, 0);
         // In any order within a slot: nothing that is decided depends on it.
         parallel_faces(planes_.size(), [&](std::uint32_t t) {
             if (is_usable(t)) ++std::atomic_ref(first_[slot_of(cells[t])]);
@@ -159,7 +158,9 @@ private:
     }
 
     [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
-        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> 20) & (slots_ - 1);
+        // The uppermost bits of a product depend on all bits of its factor (D. Knuth, "Sorting and
+        // Searching", 1973): neighbours of a cell that many faces share must not share its slot.
+        return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> (64 - slot_bits_));
     }
 
     // Calls visit(triangle) for all in a cell whose normals agree with that of `t`, until it
@@ -337,7 +338,7 @@ private:
     glm::dvec3 centre_{};
     double radius_ = 0, tolerance_ = 0;
     std::vector<FacePlane> planes_;
-    std::size_t slots_ = 0;  // a power of two
+    int slot_bits_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Resident> residents_;
     std::uint32_t sheet_count_ = 0;
