@@ -134,15 +134,6 @@ Result<RenderOptions> read_options(const Arguments& arguments) {
 
 // -- the work ----------------------------------------------------------------------------------
 
-/// Where the file has normals they are interpolated, else faces are flat.
-Shading decide_shading(const RenderOptions& options, const Scene& scene) {
-    if (options.shading) return *options.shading;
-    const bool has_normals =
-        std::any_of(scene.objects.begin(), scene.objects.end(),
-                    [](const Object& object) { return object.has_file_normals; });
-    return has_normals ? Shading::phong : Shading::flat;
-}
-
 Result<Scene> load(const RenderOptions& options, Progress& progress) {
     Result<Scene> scene = load_scene(options.models.paths, options.models.options);
     if (!scene) return scene;
@@ -250,7 +241,7 @@ Result<int> run(const Arguments& arguments) {
     progress.stage("loading");
     const Result<Scene> scene = load(options, progress);
     if (!scene) return scene.error();
-    const Shading shading = decide_shading(options, *scene);
+    const Shading shading = shading_for(options, has_file_normals(*scene));
     warn_about_translucency(options, *scene, progress);
     const double load_ms = watch.ms();
 

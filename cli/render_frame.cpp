@@ -83,6 +83,14 @@ void read_size(OptionReader& reader, RenderOptions& options) {
     }
 }
 
+bool has_file_normals(const Scene& scene) {
+    return std::ranges::any_of(scene.objects, &Object::has_file_normals);
+}
+
+Shading shading_for(const RenderOptions& options, bool file_normals) {
+    return options.shading.value_or(file_normals ? Shading::phong : Shading::flat);
+}
+
 glm::vec4 linear_color(glm::u8vec4 srgb) {
     const float alpha = static_cast<float>(srgb.a) / 255.0f;
     return {alpha * from_srgb8(srgb.r), alpha * from_srgb8(srgb.g), alpha * from_srgb8(srgb.b),

@@ -69,6 +69,11 @@ struct RenderOptions {
 /// --resolution and --samples within the limits of the algorithm, which is known already.
 void read_size(OptionReader& reader, RenderOptions& options);
 
+/// Whether a file had normals for an object.
+[[nodiscard]] bool has_file_normals(const Scene& scene);
+/// The one asked for; else normals of files are interpolated, and faces without any are flat.
+[[nodiscard]] Shading shading_for(const RenderOptions& options, bool file_normals);
+
 /// What drawing took, in milliseconds, and what the algorithm counted.
 struct Drawn {
     double resolve = 0, shade = 0, write = 0;

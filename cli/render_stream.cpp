@@ -24,10 +24,6 @@ struct StreamTotals {
     std::uint64_t triangles = 0, largest = 0, objects = 0;
 };
 
-bool has_file_normals(const Scene& scene) {
-    return std::ranges::any_of(scene.objects, &Object::has_file_normals);
-}
-
 Result<Scene> load_part(const RenderOptions& options, std::size_t k) {
     const std::vector<std::string> path{options.models.paths[k]};
     return load_scene(path, options.models.options);
@@ -86,8 +82,7 @@ public:
         for (const PictureOutput& picture : options_.outputs) outputs.push_back(picture.output);
         OutputBatch batch(std::move(outputs));
         const std::vector<PictureFile> files = files_of(options_, batch, options_.outputs);
-        const Shading shading =
-            options_.shading.value_or(survey.has_normals ? Shading::phong : Shading::flat);
+        const Shading shading = shading_for(options_, survey.has_normals);
         DrawOptions drawing;
         drawing.samples_per_axis = options_.per_axis;
         drawing.shading = {shading, linear_color(options_.background), options_.common.threads};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "shading/box_filter.hpp"
 #include "shading/surface.hpp"
 #include "visibility/parallel.hpp"
 
@@ -70,17 +71,6 @@ private:
     std::vector<glm::vec4> colors_;
 };
 
-/// Box filter over the samples of the pixels of a row, summed up row by row as everywhere.
-void average(const glm::vec4* samples, std::size_t columns, std::uint32_t n, std::uint32_t width,
-             glm::vec4* out) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-        glm::vec4 sum{0, 0, 0, 0};
-        for (std::uint32_t j = 0; j < n; ++j)
-            for (std::uint32_t i = 0; i < n; ++i) sum += samples[j * columns + x * n + i];
-        out[x] = sum / static_cast<float>(n * n);
-    }
-}
-
 }  // namespace
 
 BlendedRows::BlendedRows(const ScreenScene& screen, const SampleGrid& grid,
@@ -111,7 +101,7 @@ void BlendedRows::resolve_band(std::uint32_t band, glm::vec4* out) {
     const std::size_t columns = grid_.columns();
     const glm::vec4* samples = sink.colors().data();
     for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rows) / n; ++y)
-        average(samples + y * n * columns, columns, n, width, out + std::size_t{y} * width);
+        box_filter(samples + y * n * columns, n, width, out + std::size_t{y} * width);
 }
 
 }  // namespace sightline

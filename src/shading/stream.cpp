@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "math/predicates.hpp"
+#include "shading/box_filter.hpp"
 #include "shading/picture_rows.hpp"
 #include "shading/sample_shader.hpp"
 #include "visibility/sample_units.hpp"
@@ -171,19 +172,12 @@ struct StreamedPicture::State {
         });
     }
 
-    /// Box filter over the samples of the pixels, summed up as everywhere.
     [[nodiscard]] ColorImage picture() const {
         const std::uint32_t n = options.samples_per_axis;
         ColorImage image(size.width, size.height);
         for_rows(0, size.height, options.shading.threads, [&](std::uint32_t y) {
-            for (std::uint32_t x = 0; x < size.width; ++x) {
-                glm::vec4 sum{0, 0, 0, 0};
-                for (std::uint32_t j = 0; j < n; ++j)
-                    for (std::uint32_t i = 0; i < n; ++i)
-                        sum += samples[(std::size_t{y} * n + j) * colors->grid().columns() + x * n +
-                                       i];
-                image.at(x, y) = sum / static_cast<float>(n * n);
-            }
+            box_filter(samples.data() + std::size_t{y} * n * colors->grid().columns(), n,
+                       size.width, image.pixels.data() + std::size_t{y} * size.width);
         });
         return image;
     }
