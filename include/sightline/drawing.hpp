@@ -12,6 +12,7 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,8 +29,14 @@ enum class EdgeKind : std::uint8_t {
     crease,        ///< its faces meet at more than the crease angle, or they are three and more
     intersection,  ///< a curve in which two faces cross each other
     mesh,          ///< any other edge of a polygon of the file
+    // Of plots (plot.hpp):
+    upper,    ///< a curve on the upper side of its surface
+    lower,    ///< the same, seen from below
+    outline,  ///< where a closed surface turns away
+    hatch,    ///< a curve that is there for its shade
+    axis,     ///< an edge of the box of axes, or a tick
 };
-inline constexpr std::size_t kEdgeKinds = 6;
+inline constexpr std::size_t kEdgeKinds = 11;
 
 [[nodiscard]] std::string_view name_of(EdgeKind kind);
 
@@ -97,6 +104,13 @@ struct GuideLine {
 /// of the page. Nothing in parallel projections.
 [[nodiscard]] std::vector<GuideLine> vanishing_guides(const Camera& camera, const Box& box);
 
+/// A word on the page.
+struct Label {
+    glm::dvec2 position;    ///< of the middle of its letters
+    glm::dvec2 away{0, 0};  ///< it grows from there to this side: -1, 0 or 1 in x and y of the page
+    std::string text;       ///< UTF-8, one line
+};
+
 /// What was done, for `--stats`.
 struct DrawingCounts {
     std::uint64_t edges = 0;           ///< that were looked at
@@ -113,6 +127,7 @@ struct Drawing {
     DrawnLines lines;
     DrawnRegions regions;
     std::vector<GuideLine> guides;
+    std::vector<Label> labels;
     DrawingCounts counts;
 };
 

@@ -7,7 +7,9 @@
 #include "sightline/composite.hpp"     // IWYU pragma: export
 #include "sightline/drawing.hpp"       // IWYU pragma: export
 #include "sightline/error.hpp"         // IWYU pragma: export
+#include "sightline/formula.hpp"       // IWYU pragma: export
 #include "sightline/fragments.hpp"     // IWYU pragma: export
+#include "sightline/height_map.hpp"    // IWYU pragma: export
 #include "sightline/image.hpp"         // IWYU pragma: export
 #include "sightline/load.hpp"          // IWYU pragma: export
 #include "sightline/order.hpp"         // IWYU pragma: export

@@ -6,7 +6,8 @@ namespace sightline {
 
 std::string_view name_of(EdgeKind kind) {
     constexpr std::array<std::string_view, kEdgeKinds> kNames = {
-        "silhouette", "boundary", "border", "crease", "intersection", "mesh"};
+        "silhouette", "boundary", "border",  "crease", "intersection", "mesh",
+        "upper",      "lower",    "outline", "hatch",  "axis"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 
