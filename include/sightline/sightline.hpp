@@ -13,6 +13,7 @@
 #include "sightline/image.hpp"         // IWYU pragma: export
 #include "sightline/load.hpp"          // IWYU pragma: export
 #include "sightline/order.hpp"         // IWYU pragma: export
+#include "sightline/plot.hpp"          // IWYU pragma: export
 #include "sightline/scene.hpp"         // IWYU pragma: export
 #include "sightline/screen_scene.hpp"  // IWYU pragma: export
 #include "sightline/shading.hpp"       // IWYU pragma: export

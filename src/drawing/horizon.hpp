@@ -1,0 +1,166 @@
+// The floating horizon itself: the upper envelope of what has been drawn so far, as an exact
+// piecewise linear function that grows from front to back.
+//
+// Source: T. J. Wright, "A two-space solution to the hidden line problem for plotting functions of
+// two variables", IEEE Transactions on Computers C-22 (1973), 28-33; S. L. Watkins, "Masked
+// three-dimensional plot program with rotations", CACM 17 (1974), 520-523, algorithm 483. They keep
+// an array of heights, one for each column of the picture, and lose what happens between columns.
+// Here a horizon is a list of pieces, each a part of the very line that was drawn, so a crossing is
+// where two lines cross and a corner stays a corner.
+//
+// A horizon begins at minus infinity (a piece without a line), so the first curve is seen whole.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+namespace sightline {
+
+/// A straight line over u0..u1; u0 <= u1.
+struct Slope {
+    double u0, v0, u1, v1;
+
+    /// Exact at both ends.
+    [[nodiscard]] double at(double u) const {
+        const double t = (u - u0) / (u1 - u0);
+        return (1 - t) * v0 + t * v1;
+    }
+    [[nodiscard]] Slope upside_down() const { return {u0, -v0, u1, -v1}; }
+};
+
+/// The line between two points (u, v).
+[[nodiscard]] inline Slope slope_of(glm::dvec2 a, glm::dvec2 b) {
+    return a.x <= b.x ? Slope{a.x, a.y, b.x, b.y} : Slope{b.x, b.y, a.x, a.y};
+}
+
+/// A part of a line over from..to, for those who are told of it.
+struct Overlap {
+    double from, to;
+    bool first;  ///< there was nothing before
+};
+
+class Horizon {
+public:
+    /// Nothing yet over from..to. Lines outside of it are left alone.
+    Horizon(double from, double to);
+
+    /// Tells of the parts of a line that are above the horizon, from left to right. Neighbours may
+    /// touch. A line that lies on the horizon is not above it.
+    template <class Tell>
+    void above(const Slope& line, const Tell& tell) const;
+    /// The same, and then the horizon is where the line was above it.
+    template <class Tell>
+    void raise(const Slope& line, const Tell& tell);
+    void raise(const Slope& line) {
+        raise(line, [](const Overlap&) {});
+    }
+    /// Height at u, the greater one where it jumps; nothing where nothing is.
+    [[nodiscard]] std::optional<double> at(double u) const;
+    /// Forgets what is over from..to.
+    void clear(double from, double to);
+    /// Calls visit(from, to, line) for the pieces over from..to; the line is null where nothing is.
+    template <class Visit>
+    void each(double from, double to, const Visit& visit) const;
+
+    [[nodiscard]] double from() const { return from_; }
+    [[nodiscard]] double to() const { return to_; }
+
+private:
+    using Index = std::uint32_t;
+    static constexpr Index kNo = 0xFFFFFFFFu;
+    static constexpr std::size_t kHints = 256;
+
+    /// From u to where the next one begins.
+    struct Piece {
+        double u;
+        Slope line;
+        Index prev, next;
+        bool empty, alive;
+    };
+    struct Part {
+        double from, to;
+        [[nodiscard]] bool none() const { return !(from < to); }
+    };
+
+    /// The part of a line that is above a piece, over from..to, where both are straight.
+    static Part part_above(const Slope& line, const Piece& piece, double from, double to);
+    [[nodiscard]] double end_of(Index piece) const { return pieces_[pieces_[piece].next].u; }
+    /// The piece over [u, ...). Lines come in order, so it is near the one that was found last.
+    [[nodiscard]] Index find(double u) const;
+    [[nodiscard]] std::size_t hint_of(double u) const;
+    /// Puts one piece over from..to, which begins in piece `first` and ends in piece `last`.
+    void replace(Index first, Index last, Part over, const Slope& line, bool empty);
+    Index make(const Piece& piece);
+    void remove(Index piece);
+
+    double from_, to_;
+    std::vector<Piece> pieces_;  // a list in ascending order; the last one only marks the end
+    Index free_ = kNo;           // a list of pieces that are not used, through `next`
+    Index head_ = 0;
+    mutable Index cursor_ = 0;
+    mutable std::vector<Index> hints_;  // where a search may begin; some are no longer alive
+};
+
+// -- templates ------------------------------------------------------------------------------------
+
+template <class Tell>
+void Horizon::above(const Slope& line, const Tell& tell) const {
+    const double begin = std::fmax(line.u0, from_), end = std::fmin(line.u1, to_);
+    if (!(begin < end)) return;
+    Index p = find(begin);
+    for (double u = begin; u < end; p = pieces_[p].next) {
+        const double stop = std::fmin(end, end_of(p));
+        const Part part = part_above(line, pieces_[p], u, stop);
+        if (!part.none()) tell(Overlap{part.from, part.to, pieces_[p].empty});
+        u = stop;
+    }
+}
+
+template <class Tell>
+void Horizon::raise(const Slope& line, const Tell& tell) {
+    const double begin = std::fmax(line.u0, from_), end = std::fmin(line.u1, to_);
+    if (!(begin < end)) return;
+    Part open{0, 0};  // a part above that may go on in the next piece
+    Index first = kNo, last = kNo;
+    const auto close = [&] {
+        if (first != kNo) replace(first, last, open, line, false);
+        first = kNo;
+    };
+    Index p = find(begin);
+    for (double u = begin; u < end;) {
+        const double stop = std::fmin(end, end_of(p));
+        const Index next = pieces_[p].next;
+        const Part part = part_above(line, pieces_[p], u, stop);
+        if (!part.none()) tell(Overlap{part.from, part.to, pieces_[p].empty});
+        if (part.none() || (first != kNo && part.from > open.to)) close();
+        if (!part.none()) {
+            if (first == kNo) {
+                first = p;
+                open.from = part.from;
+            }
+            last = p;
+            open.to = part.to;
+        }
+        u = stop;
+        p = next;
+    }
+    close();
+}
+
+template <class Visit>
+void Horizon::each(double from, double to, const Visit& visit) const {
+    const double begin = std::fmax(from, from_), end = std::fmin(to, to_);
+    if (!(begin < end)) return;
+    Index p = find(begin);
+    for (double u = begin; u < end; p = pieces_[p].next) {
+        const double stop = std::fmin(end, end_of(p));
+        visit(u, stop, pieces_[p].empty ? nullptr : &pieces_[p].line);
+        u = stop;
+    }
+}
+
+}  // namespace sightline
