@@ -11,7 +11,8 @@ seconds=$1
 build=$(cd "$2" && pwd)
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
-[ $# -gt 0 ] || set -- load_fuzz mtl_fuzz obj_fuzz ply_fuzz scene_json_fuzz soup_fuzz stl_fuzz
+[ $# -gt 0 ] || set -- height_map_fuzz load_fuzz mtl_fuzz obj_fuzz ply_fuzz scene_json_fuzz \
+    soup_fuzz stl_fuzz
 
 # A reader that asks for absurd memory gets none and dies in its child process, where that belongs.
 ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"

@@ -8,11 +8,11 @@
 set -eu
 
 build_packages='g++ cmake ninja-build pkg-config
-    libassimp-dev libglm-dev libtbb-dev libhwy-dev zlib1g-dev libopenexr-dev
+    libassimp-dev libglm-dev libtbb-dev libhwy-dev zlib1g-dev libpng-dev libopenexr-dev
     libcairo2-dev libdxflib-dev libmuparser-dev
     libboost-dev libcli11-dev libfmt-dev nlohmann-json3-dev'
-test_packages='libgtest-dev libpng-dev libembree-dev clang libclang-rt-14-dev llvm
-    ccache openimageio-tools'
+test_packages='libgtest-dev libembree-dev clang libclang-rt-14-dev llvm
+    ccache openimageio-tools libgdal32'
 lint_packages='clang-format clang-tidy'
 
 fail() {

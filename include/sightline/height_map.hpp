@@ -22,15 +22,22 @@ struct HeightMap {
 };
 
 struct HeightMapOptions {
-    /// Distance of columns and of rows. Default: what the file says, else 1.
+    /// Distance of columns and of rows; positive. It overrides the place that a file tells: x is
+    /// column * cell->x and z is row * cell->y then. Default: what the file says, else 1.
     std::optional<glm::dvec2> cell;
-    double height_scale = 1;        ///< heights are multiplied by it
-    std::optional<double> no_data;  ///< this value (before scaling) means that there is no data
+    double height_scale = 1;  ///< heights are multiplied by it; finite
+    /// This value means that there is no data: as it stands in the file, before any scaling.
+    std::optional<double> no_data;
 };
 
-/// Reads a height map: 16-bit or 8-bit grey PNG, CSV (one row a line), NPY (two-dimensional), and
-/// whatever GDAL reads where GDAL is installed. Errors (bad_input, io): no such file, no height
-/// map, fewer than two rows or columns, no height at all.
+/// Reads a height map: grey PNG of 16 or fewer bits, NPY (two-dimensional), CSV (one row a line),
+/// and whatever GDAL reads where GDAL is installed; docs/formats.md tells what is taken from each.
+/// What GDAL reads, it reads in a child process (Linux only). Infinite heights become NaN.
+///
+/// Errors, one line each: bad_option for options out of range and for "-" (standard input); io when
+/// the system refused (no such file, no memory, no GDAL); bad_input for what is no height map, is
+/// damaged or too large (2^28 nodes, 4 GiB), has fewer than two rows or columns, or no height.
+/// Thread-safe.
 [[nodiscard]] Result<HeightMap> load_height_map(const std::string& path,
                                                 const HeightMapOptions& options = {});
 
