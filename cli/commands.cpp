@@ -9,12 +9,13 @@
 namespace sightline::cli {
 namespace {
 
-constexpr std::array<const Command*, 8> kCommands = {&kRender, &kDraw,       &kVisible, &kComposite,
-                                                     &kInfo,   &kAlgorithms, &kCompare, &kBench};
+constexpr std::array<const Command*, 9> kCommands = {
+    &kRender, &kDraw, &kVisible, &kPlot, &kComposite, &kInfo, &kAlgorithms, &kCompare, &kBench};
 
 constexpr std::array kProgramExamples = {
     Example{"sightline render bunny.obj -o bunny.png", "a picture with the whole model in view"},
     Example{"sightline draw bunny.obj -o bunny.svg", "an exact drawing of what can be seen"},
+    Example{"sightline plot \"y = sin(x) * cos(z)\" -o waves.svg", "a function as curves"},
     Example{"sightline info bunny.obj", "what is in the file"},
     Example{"sightline render --help", "everything that a command can do"},
 };

@@ -44,7 +44,8 @@ struct Command {
     Result<int> (*run)(const Arguments&) = nullptr;
 };
 
-extern const Command kRender, kDraw, kVisible, kComposite, kInfo, kAlgorithms, kCompare, kBench;
+extern const Command kRender, kDraw, kVisible, kPlot, kComposite, kInfo, kAlgorithms, kCompare,
+    kBench;
 
 /// All commands, in the order of the help.
 [[nodiscard]] std::span<const Command* const> commands();

@@ -81,6 +81,14 @@ void CurveRun::flush(double tolerance, DrawnLines& out) {
     points_.clear();
 }
 
+void count_lengths(const DrawnLines& lines, DrawingCounts& counts) {
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+        const double length = glm::length(lines.to[k] - lines.from[k]);
+        ++(lines.visible[k] != 0 ? counts.visible_segments : counts.hidden_segments);
+        (lines.visible[k] != 0 ? counts.visible_length : counts.hidden_length) += length;
+    }
+}
+
 void append(DrawnLines& lines, const DrawnLines& more) {
     const auto add = [](auto& to, const auto& from) {
         to.insert(to.end(), from.begin(), from.end());

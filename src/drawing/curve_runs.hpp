@@ -31,6 +31,9 @@ private:
     std::vector<glm::dvec2> points_;
 };
 
+/// Fills in the numbers and lengths of visible and hidden lines.
+void count_lengths(const DrawnLines& lines, DrawingCounts& counts);
+
 /// Adds the lines of `more`.
 void append(DrawnLines& lines, const DrawnLines& more);
 

@@ -240,15 +240,6 @@ private:
 
 // -- everything -----------------------------------------------------------------------------------
 
-void count(const DrawnLines& lines, DrawingCounts& counts) {
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-        const glm::dvec2 step = lines.to[k] - lines.from[k];
-        const double length = std::hypot(step.x, step.y);
-        ++(lines.visible[k] != 0 ? counts.visible_segments : counts.hidden_segments);
-        (lines.visible[k] != 0 ? counts.visible_length : counts.hidden_length) += length;
-    }
-}
-
 Result<Drawing> sweep_all(const HeightGrid& grid, const Camera& camera, const PlotOptions& options,
                           const std::vector<AxisLine>& axes) {
     const HorizonPlan plan(grid, camera, options);
@@ -274,7 +265,7 @@ Result<Drawing> sweep_all(const HeightGrid& grid, const Camera& camera, const Pl
     AxisPainter painter(grid, options, drawing.lines);
     for (std::size_t k = 0; k < axes.size(); ++k)
         painter.draw(axes[k], static_cast<std::uint32_t>(k), sweeps);
-    count(drawing.lines, drawing.counts);
+    count_lengths(drawing.lines, drawing.counts);
     return drawing;
 }
 

@@ -147,6 +147,10 @@ void HorizonView::set_range() {
     to_ = perspective_ ? std::min(high, half_width_) : high;
 }
 
+double HorizonView::pixels_across() const {
+    return perspective_ ? camera_->pixels_per_unit() : glm::length(page_u_);
+}
+
 double HorizonView::depth_of_row(std::size_t row) const { return depths_[row]; }
 
 double HorizonView::camera_depth(glm::dvec2 uv) const {

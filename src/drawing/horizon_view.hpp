@@ -39,6 +39,8 @@ public:
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }
     /// The other coordinate of the nodes, relative to the eye or the middle; ascending.
     [[nodiscard]] const std::vector<double>& across() const { return across_; }
+    /// Pixels that a unit of u has on the page, about.
+    [[nodiscard]] double pixels_across() const;
     /// Depth of a row of the grid; positive in perspective.
     [[nodiscard]] double depth_of_row(std::size_t row) const;
 

@@ -107,7 +107,6 @@ void draw_regions(cairo_t* to, const DrawnRegions& regions, const PageLayout& la
 }
 
 void draw_lines(cairo_t* to, const Paths& paths, const VectorOptions& options) {
-    cairo_set_source_rgb(to, 0, 0, 0);
     std::size_t traced = 0;
     for (std::size_t p = 0; p < paths.size(); ++p) {
         const std::uint32_t begin = paths.first_point[p], end = paths.first_point[p + 1];
@@ -118,9 +117,13 @@ void draw_lines(cairo_t* to, const Paths& paths, const VectorOptions& options) {
         if (closed) cairo_close_path(to);
         traced += points.size();
         const bool visible = paths.visible[p] != 0;
-        const bool go_on = p + 1 < paths.size() && paths.visible[p + 1] == paths.visible[p];
+        const Look look = look_of(paths.kind[p]);
+        const bool go_on = p + 1 < paths.size() && paths.visible[p + 1] == paths.visible[p] &&
+                           look_of(paths.kind[p + 1]) == look;
         if (go_on && traced < kPointsAtOnce) continue;
-        set_pen(to, options.stroke, visible ? 1 : kHiddenWidth, !visible && options.dashed_hidden);
+        set_color(to, look.color);
+        set_pen(to, options.stroke, look.width * (visible ? 1 : kHiddenWidth),
+                !visible && options.dashed_hidden);
         cairo_stroke(to);
         traced = 0;
     }
@@ -138,6 +141,23 @@ void draw_guides(cairo_t* to, const Drawing& drawing, const VectorOptions& optio
     }
 }
 
+/// In a font of the system's: the only thing on a page that depends on the machine.
+void draw_labels(cairo_t* to, const Drawing& drawing, const PageLayout& layout) {
+    const double height = kTextHeight * layout.scale;
+    cairo_select_font_face(to, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(to, height);
+    set_color(to, {0, 0, 0});
+    for (const Label& label : drawing.labels) {
+        const std::string text = clean_utf8(label.text);
+        cairo_text_extents_t extents;
+        cairo_text_extents(to, text.c_str(), &extents);
+        const glm::dvec2 place = on_page(layout, label.position);
+        cairo_move_to(to, place.x - 0.5 * (1 - label.away.x) * extents.x_advance,
+                      place.y + baseline_of(label) * height);
+        cairo_show_text(to, text.c_str());
+    }
+}
+
 /// Draws everything on one page whose unit is `scale` units of the surface.
 cairo_status_t draw(cairo_surface_t* surface, double scale, bool opaque, const Drawing& drawing,
                     const Paths& paths, const VectorOptions& options) {
@@ -150,6 +170,7 @@ cairo_status_t draw(cairo_surface_t* surface, double scale, bool opaque, const D
     draw_regions(to, drawing.regions, options.layout);
     draw_lines(to, paths, options);
     draw_guides(to, drawing, options);
+    if (!drawing.labels.empty()) draw_labels(to, drawing, options.layout);
     cairo_show_page(to);
     return cairo_status(to);
 }

@@ -3,9 +3,10 @@
 // dxflib writes to a file of its own and does not say when the disk is full. But all that it prints
 // goes through five virtual functions, which are overridden here to print into our file.
 //
-// Layers: FILL, HIDDEN_KIND and VISIBLE_KIND (KIND as in SILHOUETTE) and CONSTRUCTION_X, _Y and _Z,
-// each only when something is on it. Paths and loops of regions are light-weight polylines; those
-// of regions are closed and have their colour. y points up, from the lower edge of the page.
+// Layers: FILL, HIDDEN_KIND and VISIBLE_KIND (KIND as in SILHOUETTE) and CONSTRUCTION_X, _Y and _Z
+// and LABELS, each only when something is on it. Paths and loops of regions are light-weight
+// polylines; those of regions are closed and have their colour. y points up, from the lower edge of
+// the page.
 #include <dxflib/dl_dxf.h>
 #include <dxflib/dl_writer_ascii.h>
 #include <fmt/format.h>
@@ -106,6 +107,7 @@ public:
         put_regions();
         put_paths();
         put_guides();
+        put_labels();
         to_.sectionEnd();
         dxf_.writeObjects(to_);
         dxf_.writeObjectsEnd(to_);
@@ -130,6 +132,7 @@ private:
     void put_regions();
     void put_paths();
     void put_guides();
+    void put_labels();
     void put_polyline(std::span<const glm::dvec2> page, bool closed, const DL_Attributes& look);
     [[nodiscard]] std::vector<Layer> layers() const;
     [[nodiscard]] std::vector<glm::dvec2> flipped(std::span<const glm::dvec2> pixels) const;
@@ -200,8 +203,10 @@ std::vector<DxfWriter::Layer> DxfWriter::layers() const {
             paths_.visible[p] == paths_.visible[p - 1]) {
             continue;
         }
-        out.push_back({layer_of(paths_.kind[p], visible), visible ? kForeground : kDarkGrey,
-                       options_.stroke * (visible ? 1 : kHiddenWidth),
+        const Look look = look_of(paths_.kind[p]);
+        const bool black = visible && look.color == Rgb8{0, 0, 0};
+        out.push_back({layer_of(paths_.kind[p], visible), black ? kForeground : kDarkGrey,
+                       options_.stroke * look.width * (visible ? 1 : kHiddenWidth),
                        !visible && options_.dashed_hidden});
     }
     constexpr std::array<int, 3> kColors = {kRed, kGreen, kBlue};
@@ -212,6 +217,7 @@ std::vector<DxfWriter::Layer> DxfWriter::layers() const {
                 {layer_of_guide(axis), kColors[axis], kGuideWidth * options_.stroke, true});
         }
     }
+    if (!drawing_.labels.empty()) out.push_back({"LABELS", kForeground, 0, false});
     return out;
 }
 
@@ -300,6 +306,20 @@ void DxfWriter::put_guides() {
         dxf_.writeLine(
             to_, DL_LineData(from.x, layout_.height - from.y, 0, to.x, layout_.height - to.y, 0),
             on_layer(layer_of_guide(guide.axis)));
+    }
+}
+
+void DxfWriter::put_labels() {
+    constexpr int kBaseline = 0, kStandard = 0;
+    const double height = kTextHeight * layout_.scale;
+    for (const Label& label : drawing_.labels) {
+        const glm::dvec2 place = on_page(layout_, label.position);
+        const double x = place.x, y = layout_.height - place.y - baseline_of(label) * height;
+        const int justified = label.away.x > 0 ? 0 : label.away.x < 0 ? 2 : 1;
+        dxf_.writeText(to_,
+                       DL_TextData(x, y, 0, x, y, 0, kToTop * height, 1, kStandard, justified,
+                                   kBaseline, clean_utf8(label.text), "Standard", 0),
+                       on_layer("LABELS"));
     }
 }
 

@@ -1,7 +1,8 @@
 // SVG 1.1 (W3C Recommendation, second edition, 2011): written by hand, for speed and few bytes.
 //
 // The document: an optional <title>, an optional <rect id="background">, then the groups `fill`,
-// `hidden` and `visible`, which are always there, and `construction` when there are guides. They,
+// `hidden` and `visible`, which are always there, and `construction` and `labels` when there are
+// guides or words. They,
 // and the groups of kinds inside, are layers for Inkscape.
 //
 //   fill      regions, one <path> each: data-object, and data-source, the source polygon's number.
@@ -13,8 +14,11 @@
 //             by blanks: "a" or "a,b", the source polygons of the edge. Equal items that follow
 //             each other are all written, so that item k belongs to segment k. The last segment of
 //             a closed path is its "z".
+//             Kinds of plots have a style of their own, and one item for all of a path: the number
+//             of its curve.
 //   construction
 //             a <path> each, class x, y or z: the axis of the world that it is parallel to.
+//   labels    a <text> each.
 //
 // Numbers are printed from integers, multiples of the last decimal. Each subpath begins with an
 // absolute "M", and goes on relatively with "l": differences of what is printed, so adding them up
@@ -55,6 +59,7 @@ public:
         put_lines(paths, 0);
         put_lines(paths, 1);
         if (!drawing_.guides.empty()) put_guides();
+        if (!drawing_.labels.empty()) put_labels();
         out_.put("</svg>\n");
         out_.flush();
     }
@@ -78,6 +83,7 @@ private:
     void put_lines(const Paths& paths, std::uint8_t visible);
     void put_path(const Paths& paths, std::uint32_t path);
     void put_guides();
+    void put_labels();
     void put_object(std::uint32_t object);
     void put_sources(std::span<const std::uint32_t> parts);
     void put_subpath(std::span<const glm::dvec2> points, Repeats repeats);
@@ -151,6 +157,7 @@ void SvgWriter::put_object(std::uint32_t object) {
 /// Parts of a path, the last of which is kNone.
 void SvgWriter::put_sources(std::span<const std::uint32_t> parts) {
     out_.put("\" data-source=\"");
+    if (drawing_.lines.kind[parts.front()] >= EdgeKind::upper) parts = parts.first(2);
     for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
         if (k > 0) out_.put(' ');
         const glm::uvec2 polygons = drawing_.lines.polygons[parts[k]];
@@ -219,6 +226,14 @@ void SvgWriter::put_region(std::uint32_t region) {
     out_.put("\"/>\n");
 }
 
+/// What differs from the other lines.
+std::string look_attributes(const Look& look, double width) {
+    std::string out;
+    if (look.color != Rgb8{0, 0, 0}) out += fmt::format(" stroke=\"{}\"", hex(look.color));
+    if (look.width != 1) out += fmt::format(" stroke-width=\"{:.6g}\"", look.width * width);
+    return out;
+}
+
 /// The visible ones, or the hidden ones. Precondition: each stand together, by kind.
 void SvgWriter::put_lines(const Paths& paths, std::uint8_t visible) {
     const double width = options_.stroke * (visible != 0 ? 1 : kHiddenWidth);
@@ -232,9 +247,9 @@ void SvgWriter::put_lines(const Paths& paths, std::uint8_t visible) {
             continue;
         }
         const EdgeKind kind = paths.kind[p];
-        out_.put(
-            fmt::format("<g class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\">\n",
-                        name_of(kind)));
+        out_.put(fmt::format(
+            "<g class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\"{1}>\n",
+            name_of(kind), look_attributes(look_of(kind), width)));
         for (; p < count && paths.visible[p] == visible && paths.kind[p] == kind; ++p) {
             put_path(paths, p);
         }
@@ -271,6 +286,24 @@ void SvgWriter::put_guides() {
         out_.put_decimal(to.x, grid_.decimals());
         out_.put_next_decimal(to.y, grid_.decimals());
         out_.put("\"/>\n");
+    }
+    out_.put("</g>\n");
+}
+
+void SvgWriter::put_labels() {
+    open_layer("labels", fmt::format(" font-family=\"sans-serif\" font-size=\"{:.6g}\"",
+                                     kTextHeight * layout_.scale));
+    for (const Label& label : drawing_.labels) {
+        const glm::dvec2 place = on_page(layout_, label.position);
+        const GridPoint at =
+            rounded({place.x, place.y + baseline_of(label) * kTextHeight * layout_.scale});
+        out_.put("<text x=\"");
+        out_.put_decimal(at.x, grid_.decimals());
+        out_.put("\" y=\"");
+        out_.put_decimal(at.y, grid_.decimals());
+        if (label.away.x <= 0)
+            out_.put(label.away.x < 0 ? "\" text-anchor=\"end" : "\" text-anchor=\"middle");
+        out_.put("\">" + xml_text(label.text) + "</text>\n");
     }
     out_.put("</g>\n");
 }

@@ -11,6 +11,19 @@ namespace sightline {
 
 Rgb8 rgb8(glm::vec3 linear) { return {to_srgb8(linear.r), to_srgb8(linear.g), to_srgb8(linear.b)}; }
 
+Look look_of(EdgeKind kind) {
+    switch (kind) {
+        case EdgeKind::lower:
+            return {0.7, {0x77, 0x77, 0x77}};
+        case EdgeKind::hatch:
+            return {0.6, {0, 0, 0}};
+        case EdgeKind::axis:
+            return {0.7, {0x55, 0x55, 0x55}};
+        default:
+            return {};
+    }
+}
+
 std::vector<ColoredRegion> by_color(const DrawnRegions& regions) {
     std::vector<ColoredRegion> order(regions.size());
     for (std::uint32_t r = 0; r < order.size(); ++r) {

@@ -24,6 +24,24 @@ using Rgb8 = std::array<std::uint8_t, 3>;
 inline constexpr std::array<Rgb8, 3> kGuideColors = {
     {{0xCC, 0x33, 0x33}, {0x33, 0x99, 0x33}, {0x33, 0x66, 0xCC}}};
 
+/// How lines of a kind look.
+struct Look {
+    double width = 1;  ///< of VectorOptions::stroke
+    Rgb8 color{0, 0, 0};
+    friend bool operator==(const Look&, const Look&) = default;
+};
+[[nodiscard]] Look look_of(EdgeKind kind);
+
+/// Words are so high: pixels of the camera.
+inline constexpr double kTextHeight = 13;
+/// From the baseline to the middle of digits and capitals, and to their top.
+inline constexpr double kToMiddle = 0.36, kToTop = 0.72;  // of kTextHeight
+
+/// Where the baseline of a word is below its place, in its height.
+[[nodiscard]] inline double baseline_of(const Label& label) {
+    return label.away.y < 0 ? 0 : label.away.y > 0 ? kToTop : kToMiddle;
+}
+
 /// Regions whose colours are equal as 8-bit sRGB stand together, in their own order.
 struct ColoredRegion {
     std::uint32_t color;  ///< 0xRRGGBB
