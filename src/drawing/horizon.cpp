@@ -1,6 +1,7 @@
 #include "drawing/horizon.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sightline {
 namespace {
@@ -12,9 +13,14 @@ constexpr double kRounding = 0x1p-50;
 
 }  // namespace
 
-Horizon::Horizon(double from, double to) : from_(from), to_(to), hints_(kHints, 0) {
-    pieces_.push_back({from, {}, kNo, 1, true, true});
-    pieces_.push_back({to, {}, 0, kNo, true, true});
+Horizon::Horizon(double from, double to)
+    : from_(from),
+      to_(to),
+      hints_per_u_(double{kHints} / (to - from)),
+      hints_(kHints, 0),
+      noted_(kHints, -INFINITY) {
+    pieces_.push_back({from, {0, 0, 0, 0, 0}, kNo, 1, true, true});
+    pieces_.push_back({to, {0, 0, 0, 0, 0}, 0, kNo, true, true});
 }
 
 Horizon::Part Horizon::part_above(const Slope& line, const Piece& piece, double from, double to) {
@@ -29,19 +35,22 @@ Horizon::Part Horizon::part_above(const Slope& line, const Piece& piece, double 
     return at_from > at_to ? Part{from, cross} : Part{cross, to};
 }
 
-std::size_t Horizon::hint_of(double u) const {
-    const double share = (u - from_) / (to_ - from_) * static_cast<double>(kHints);
-    return static_cast<std::size_t>(std::clamp(share, 0.0, static_cast<double>(kHints - 1)));
-}
-
 Horizon::Index Horizon::find(double u) const {
-    const std::size_t slot = hint_of(u);
     Index p = cursor_;
-    if (hint_of(pieces_[p].u) != slot && pieces_[hints_[slot]].alive) p = hints_[slot];
+    for (int steps = 0; steps < 8; ++steps) {
+        if (pieces_[p].u > u) {
+            p = pieces_[p].prev;
+        } else if (end_of(p) <= u) {
+            p = pieces_[p].next;
+        } else {
+            return cursor_ = p;
+        }
+    }
+    const std::size_t slot = hint_of(u);
+    if (pieces_[hints_[slot]].alive) p = hints_[slot];
     while (pieces_[p].u > u) p = pieces_[p].prev;
     while (end_of(p) <= u) p = pieces_[p].next;
-    cursor_ = hints_[slot] = p;
-    return p;
+    return cursor_ = hints_[slot] = p;
 }
 
 std::optional<double> Horizon::at(double u) const {
@@ -59,13 +68,26 @@ std::optional<double> Horizon::at(double u) const {
     return height;
 }
 
+void Horizon::note_heights() {
+    std::fill(noted_.begin(), noted_.end(), INFINITY);
+    for (Index p = head_; pieces_[p].next != kNo; p = pieces_[p].next) {
+        const Piece& piece = pieces_[p];
+        const double end = end_of(p);
+        const double low =
+            piece.empty ? -INFINITY : std::min(piece.line.at(piece.u), piece.line.at(end));
+        const std::size_t last = hint_of(end);
+        for (std::size_t k = hint_of(piece.u); k <= last; ++k) noted_[k] = std::min(noted_[k], low);
+    }
+}
+
 void Horizon::clear(double from, double to) {
     const Part over{std::max(from, from_), std::min(to, to_)};
     if (over.none()) return;
     const Index first = find(over.from);
     Index last = first;
     while (end_of(last) < over.to) last = pieces_[last].next;
-    replace(first, last, over, {}, true);
+    replace(first, last, over, {0, 0, 0, 0, 0}, true);
+    for (std::size_t k = hint_of(over.from); k <= hint_of(over.to); ++k) noted_[k] = -INFINITY;
 }
 
 Horizon::Index Horizon::make(const Piece& piece) {

@@ -11,7 +11,7 @@
 // A horizon begins at minus infinity (a piece without a line), so the first curve is seen whole.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -23,13 +23,16 @@ namespace sightline {
 /// A straight line over u0..u1; u0 <= u1.
 struct Slope {
     double u0, v0, u1, v1;
+    double per_u = 1 / (u1 - u0);
 
     /// Exact at both ends.
     [[nodiscard]] double at(double u) const {
-        const double t = (u - u0) / (u1 - u0);
+        if (u <= u0) return v0;
+        if (u >= u1) return v1;
+        const double t = (u - u0) * per_u;
         return (1 - t) * v0 + t * v1;
     }
-    [[nodiscard]] Slope upside_down() const { return {u0, -v0, u1, -v1}; }
+    [[nodiscard]] Slope upside_down() const { return {u0, -v0, u1, -v1, per_u}; }
 };
 
 /// The line between two points (u, v).
@@ -58,6 +61,9 @@ public:
     void raise(const Slope& line) {
         raise(line, [](const Overlap&) {});
     }
+    /// Takes note of how high it is, roughly, so that lines far below are dismissed at once. It
+    /// never sinks but by clear(), so what is noted stays true.
+    void note_heights();
     /// Height at u, the greater one where it jumps; nothing where nothing is.
     [[nodiscard]] std::optional<double> at(double u) const;
     /// Forgets what is over from..to.
@@ -89,31 +95,43 @@ private:
     /// The part of a line that is above a piece, over from..to, where both are straight.
     static Part part_above(const Slope& line, const Piece& piece, double from, double to);
     [[nodiscard]] double end_of(Index piece) const { return pieces_[pieces_[piece].next].u; }
+    /// Whether a line is below all that was noted.
+    [[nodiscard]] bool is_far_below(const Slope& line) const {
+        const double highest = std::max(line.v0, line.v1);
+        const std::size_t last = hint_of(line.u1);
+        std::size_t k = hint_of(line.u0);
+        while (k <= last && highest <= noted_[k]) ++k;
+        return k > last;
+    }
     /// The piece over [u, ...). Lines come in order, so it is near the one that was found last.
     [[nodiscard]] Index find(double u) const;
-    [[nodiscard]] std::size_t hint_of(double u) const;
+    [[nodiscard]] std::size_t hint_of(double u) const {
+        return static_cast<std::size_t>(
+            std::clamp((u - from_) * hints_per_u_, 0.0, double{kHints - 1}));
+    }
     /// Puts one piece over from..to, which begins in piece `first` and ends in piece `last`.
     void replace(Index first, Index last, Part over, const Slope& line, bool empty);
     Index make(const Piece& piece);
     void remove(Index piece);
 
-    double from_, to_;
+    double from_, to_, hints_per_u_;
     std::vector<Piece> pieces_;  // a list in ascending order; the last one only marks the end
     Index free_ = kNo;           // a list of pieces that are not used, through `next`
     Index head_ = 0;
     mutable Index cursor_ = 0;
     mutable std::vector<Index> hints_;  // where a search may begin; some are no longer alive
+    std::vector<double> noted_;         // no more than the height, of equal parts of the width
 };
 
 // -- templates ------------------------------------------------------------------------------------
 
 template <class Tell>
 void Horizon::above(const Slope& line, const Tell& tell) const {
-    const double begin = std::fmax(line.u0, from_), end = std::fmin(line.u1, to_);
-    if (!(begin < end)) return;
+    const double begin = std::max(line.u0, from_), end = std::min(line.u1, to_);
+    if (!(begin < end) || is_far_below(line)) return;
     Index p = find(begin);
     for (double u = begin; u < end; p = pieces_[p].next) {
-        const double stop = std::fmin(end, end_of(p));
+        const double stop = std::min(end, end_of(p));
         const Part part = part_above(line, pieces_[p], u, stop);
         if (!part.none()) tell(Overlap{part.from, part.to, pieces_[p].empty});
         u = stop;
@@ -122,8 +140,8 @@ void Horizon::above(const Slope& line, const Tell& tell) const {
 
 template <class Tell>
 void Horizon::raise(const Slope& line, const Tell& tell) {
-    const double begin = std::fmax(line.u0, from_), end = std::fmin(line.u1, to_);
-    if (!(begin < end)) return;
+    const double begin = std::max(line.u0, from_), end = std::min(line.u1, to_);
+    if (!(begin < end) || is_far_below(line)) return;
     Part open{0, 0};  // a part above that may go on in the next piece
     Index first = kNo, last = kNo;
     const auto close = [&] {
@@ -132,7 +150,7 @@ void Horizon::raise(const Slope& line, const Tell& tell) {
     };
     Index p = find(begin);
     for (double u = begin; u < end;) {
-        const double stop = std::fmin(end, end_of(p));
+        const double stop = std::min(end, end_of(p));
         const Index next = pieces_[p].next;
         const Part part = part_above(line, pieces_[p], u, stop);
         if (!part.none()) tell(Overlap{part.from, part.to, pieces_[p].empty});
@@ -153,11 +171,11 @@ void Horizon::raise(const Slope& line, const Tell& tell) {
 
 template <class Visit>
 void Horizon::each(double from, double to, const Visit& visit) const {
-    const double begin = std::fmax(from, from_), end = std::fmin(to, to_);
+    const double begin = std::max(from, from_), end = std::min(to, to_);
     if (!(begin < end)) return;
     Index p = find(begin);
     for (double u = begin; u < end; p = pieces_[p].next) {
-        const double stop = std::fmin(end, end_of(p));
+        const double stop = std::min(end, end_of(p));
         visit(u, stop, pieces_[p].empty ? nullptr : &pieces_[p].line);
         u = stop;
     }

@@ -10,6 +10,8 @@
 namespace sightline {
 namespace {
 
+constexpr std::size_t kRowsBetweenNotes = 4;
+
 std::vector<std::uint32_t> numbers(const std::vector<LineUse>& uses, std::uint32_t& next) {
     std::vector<std::uint32_t> out(uses.size(), kNone);
     for (std::size_t k = 0; k < uses.size(); ++k)
@@ -74,6 +76,8 @@ void HorizonSweep::run(WorkMeter& meter) {
             strip(first, last);
         }
         for (CurveRun& run : row_runs_) run.flush(plan_.options.tolerance, lines);
+        if (k % kRowsBetweenNotes == 0)
+            for (Skyline& skyline : skylines_) skyline.note_heights();
         if (k % 16 == 0) meter.add(16);
     }
     for (CurveRun& run : column_runs_) run.flush(plan_.options.tolerance, lines);

@@ -32,6 +32,11 @@ public:
     void raise(const Slope& line);
     /// Both at once.
     void see_and_raise(const Slope& line, std::vector<Seen>& out);
+    /// See Horizon.
+    void note_heights() {
+        upper_.note_heights();
+        lower_.note_heights();
+    }
     /// The surface ends over from..to: what it hid it goes on hiding, and what comes begins anew.
     void set_aside(double from, double to);
 
