@@ -133,6 +133,13 @@ void read_curves(OptionReader& reader, PlotCommandOptions& options) {
     options.plot.tolerance =
         reader.number("--tolerance", {0, 100, true}, "a number above 0, up to 100").value_or(0.05);
     options.image_space = arguments.has("--image-space");
+    if (options.image_space) {
+        options.axes = false;  // it can't tell what hides them
+        if (lines != 0)
+            reader.fail(wrong_use(
+                "--image-space draws the curves across the view only: leave --lines out"));
+        if (arguments.has("--hatch")) reader.fail(wrong_use("--image-space draws no --hatch"));
+    }
     options.outline = !arguments.has("--no-outline");
 }
 

@@ -48,7 +48,8 @@ public:
     AxesBuilder(const Box& box, const Camera& camera, glm::dvec3 units)
         : box_(box), camera_(camera), units_(units) {
         const glm::dvec3 sight = camera.view_vector(box.centre());
-        for (int k = 0; k < 3; ++k) near_[k] = sight[k] < 0;
+        const double none = 1e-9 * glm::length(sight);
+        for (int k = 0; k < 3; ++k) near_[k] = sight[k] <= none;
     }
 
     PlotAxes build() {

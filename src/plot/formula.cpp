@@ -19,6 +19,20 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
 }
 
+/// What muParser says, with the place counted from 1; at the end of the text something is missing.
+std::string complaint(const mu::ParserError& error, std::string_view text) {
+    std::string what = error.GetMsg();
+    for (const std::string_view tail : {" found at position", " at position"}) {
+        const std::size_t at = what.find(tail);
+        if (at != std::string::npos) what.resize(at);
+    }
+    while (!what.empty() && (what.back() == '.' || what.back() == ' ')) what.pop_back();
+    if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
+        what = fmt::format("'{}' is unknown (variables are x, y and z)", error.GetToken());
+    }
+    return fmt::format("{}, at character {} of '{}'", what, error.GetPos() + 1, text);
+}
+
 double floor_of(double x) { return std::floor(x); }
 double ceil_of(double x) { return std::ceil(x); }
 double mod_of(double x, double m) { return x - m * std::floor(x / m); }
@@ -65,9 +79,7 @@ Result<Expression> Expression::parse(std::string_view text) {
         state->parser.Eval();
         return Expression(std::move(state));
     } catch (const mu::ParserError& error) {
-        // muParser counts from 0, and the end of the text when something is missing there.
-        return wrong(
-            fmt::format("{}, at character {} of '{}'", error.GetMsg(), error.GetPos() + 1, text));
+        return wrong(complaint(error, text));
     }
 }
 
