@@ -75,7 +75,7 @@ struct DrawnLines {
     /// Source polygons of the edge, ascending: one (the other is kNone) or two; of an edge with
     /// more faces the first two, of an intersection curve the two that cross. Of a FreeLine none.
     std::vector<glm::uvec2> polygons;
-    std::vector<std::uint32_t> object;  ///< of the first polygon, or kNone
+    std::vector<std::uint32_t> object;  ///< of the first polygon, or as FreeLine has it
 
     [[nodiscard]] std::size_t size() const { return from.size(); }
 };
@@ -141,6 +141,7 @@ enum class TraceMethod {
 struct FreeLine {
     glm::dvec3 from{}, to{};
     EdgeKind kind = EdgeKind::axis;
+    std::uint32_t object = kNone;  ///< for DrawnLines
 };
 
 enum class FillStyle {

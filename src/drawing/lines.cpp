@@ -112,7 +112,7 @@ public:
         add(edge_->q, true);
         const auto faces = edges_.faces_of(*edge_);
         polygons_ = polygons_of(page_.scene(), faces);
-        object_ = faces.empty() ? kNone : page_.scene().object_of(faces[0]);
+        object_ = faces.empty() ? edge_->object : page_.scene().object_of(faces[0]);
         for (const Part& part : parts_) append(part, keep_hidden);
     }
 
@@ -180,7 +180,7 @@ PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options) {
     const auto add = [&](const ScreenLine& ends, EdgeKind kind) {
         if (!ends || (ends->first.x == ends->second.x && ends->first.y == ends->second.y))
             return false;
-        all.edges.push_back({ends->first, ends->second, kind});
+        all.edges.push_back({.p = ends->first, .q = ends->second, .kind = kind});
         return true;
     };
     if (!options.edges.empty()) {
@@ -197,7 +197,8 @@ PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options) {
     }
     const ScreenTransform transform = page_transform(page);
     for (const FreeLine& line : options.free_lines)
-        add(clip_line(transform, line.from, line.to), line.kind);
+        if (add(clip_line(transform, line.from, line.to), line.kind))
+            all.edges.back().object = line.object;
     return all;
 }
 

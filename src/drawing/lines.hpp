@@ -17,6 +17,7 @@ struct PageEdge {
     EdgeKind kind = EdgeKind::mesh;
     bool culled = false;  ///< wholly hidden: its faces are the removed back of something closed
     std::uint32_t first_face = 0, face_count = 0;  ///< in PageEdges::faces; none of a FreeLine
+    std::uint32_t object = kNone;                  ///< of a FreeLine
 };
 
 struct PageEdges {
