@@ -4,7 +4,7 @@
 //
 // How this version differs: horizons fail where a surface has several heights at a place, so the
 // surfaces are meshed here, with edges along every curve, and the hidden lines of the mesh are
-// found exactly (see trace()). Outlines are curves of their own: see contours.hpp.
+// found exactly (see trace()). Outlines and crossings are curves of their own: surface_curves.hpp.
 #include "plot/sections.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +15,9 @@
 #include <optional>
 #include <utility>
 
-#include "plot/contours.hpp"
 #include "plot/section_grid.hpp"
+#include "plot/surface_curves.hpp"
+#include "scene/finish.hpp"
 
 namespace sightline {
 namespace {
@@ -128,7 +129,7 @@ Scene scene_of(std::vector<Surface>& surfaces, std::span<const Field> fields, co
         }
         surfaces[s].mesh = {};
     }
-    finish_scene(scene);
+    finish_scene_without_sheets(scene);
     return scene;
 }
 
@@ -177,10 +178,7 @@ private:
         switch (traced) {
             case EdgeKind::axis:
             case EdgeKind::outline:
-                return traced;
             case EdgeKind::intersection:
-                // Two triangles of one mesh cross by rounding at the most.
-                if (scene_.object_of(faces.x) == scene_.object_of(faces.y)) return {};
                 return traced;
             case EdgeKind::boundary:
                 return is_drawn(faces.x, nearest_side(faces.x, 0.5 * (lines.from[i] + lines.to[i])))
@@ -239,7 +237,6 @@ TraceOptions trace_options_for(const SectionOptions& options, std::size_t fields
     // Sections are silhouettes, too, where the surface turns away along them.
     trace.edges = {EdgeKind::silhouette, EdgeKind::boundary, EdgeKind::border, EdgeKind::crease,
                    EdgeKind::mesh};
-    if (fields > 1) trace.edges.add(EdgeKind::intersection);
     trace.crease_angle = 180;
     trace.hidden = options.hidden;
     trace.threads = options.threads;
@@ -248,6 +245,22 @@ TraceOptions trace_options_for(const SectionOptions& options, std::size_t fields
         trace.free_lines.push_back(
             {axis[0], axis[1], EdgeKind::axis, static_cast<std::uint32_t>(fields)});
     return trace;
+}
+
+/// The curves on surface k that are not sections: its outline, and crossings with those after it.
+void append_curves(std::span<const Field> fields, std::size_t k, const Surface& surface,
+                   const SectionPlanes& planes, const Camera& camera, const SectionOptions& options,
+                   std::vector<FreeLine>& lines) {
+    const auto append = [&](const std::vector<FreeLine>& curves) {
+        for (FreeLine line : curves) {
+            line.object = static_cast<std::uint32_t>(k);
+            lines.push_back(line);
+        }
+    };
+    const MeshedField meshed{fields[k], surface.mesh, surface.grid};
+    if (options.outline) append(find_outlines(meshed, camera, planes, options.threads));
+    for (std::size_t other = k + 1; other < fields.size(); ++other)
+        append(find_common_curves(meshed, fields[other], camera, planes, options.threads));
 }
 
 /// The counts that belong to the lines which are left.
@@ -285,13 +298,7 @@ Result<Drawing> trace_sections(std::span<const Field> fields, const Camera& came
         Result<Surface> surface =
             surface_of(fields[k], planes, camera, options, progress_of(done, done + share));
         if (!surface) return surface.error();
-        if (options.outline) {
-            for (FreeLine& line : find_contours(fields[k], surface->mesh, surface->grid, camera,
-                                                planes.x, planes.z, options.threads)) {
-                line.object = static_cast<std::uint32_t>(k);
-                trace_options.free_lines.push_back(line);
-            }
-        }
+        append_curves(fields, k, *surface, planes, camera, options, trace_options.free_lines);
         surfaces.push_back(std::move(*surface));
     }
     const Scene scene = scene_of(surfaces, fields, options.box, options.boundary);
