@@ -120,7 +120,7 @@ double chord_error(const Field& field, const SectionMesh& mesh, const SectionPla
         }
     }
     if (errors.empty()) return 0;
-    const auto nearly_all = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 49 / 50);
+    const auto nearly_all = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 99 / 100);
     std::ranges::nth_element(errors, nearly_all);
     return *nearly_all;
 }

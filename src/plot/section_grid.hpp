@@ -23,7 +23,7 @@ struct SectionPlanes {
 /// nodes.
 [[nodiscard]] SectionGrid grid_of(const SectionPlanes& planes, std::size_t cells);
 
-/// How far the chords of sections are off the surface, in pixels: what all but 2 % of a sample stay
+/// How far the chords of sections are off the surface, in pixels: what all but 1 % of a sample stay
 /// below. Of the whole mesh, where there are no sections.
 [[nodiscard]] double chord_error(const Field& field, const SectionMesh& mesh,
                                  const SectionPlanes& planes, const Camera& camera);

@@ -31,9 +31,11 @@ constexpr double kZero = 0x1p-8;   // the same: too large to be near one
 // Of a cell. Derivatives are differences over this length: their error is of its square, and of
 // 2^-52 through its inverse.
 constexpr double kDifference = 0x1p-10;
-// Of a cell: its diagonal. A surface with curvature k falls away from a line that touches it by
-// k d^2 / 2 over a length d, and the mesh is off the surface by k d^2 / 8 for edges of that length.
-constexpr double kLift = 1.75;
+// Of a cell. A surface with curvature k falls away from a line that touches it by k d^2 / 2 over a
+// length d, and the mesh is off the surface by k d^2 / 8 for edges of that length, the longest of
+// which are diagonals. A crossing touches lines of sight at its ends only, and is lifted less:
+// where it goes out of sight, it does so later by the lift.
+constexpr double kLiftOfOutline = 1.75, kLiftOfCrossing = 1;
 constexpr double kOnSide = 1e-6;  // of a cell: a point so near to a side lies on it
 
 using MeshEdge = std::pair<std::uint32_t, std::uint32_t>;  // vertices, the lower one first
@@ -224,10 +226,11 @@ std::vector<FreeLine> curves_of(const MeshedField& surface, const Field& second,
     in_arena(threads, [&] { finder.run(); });
     std::vector<FreeLine> lines;
     const double cell = largest_cell(surface.grid), tolerance = kOnSide * cell;
+    const double lift = cell * (kind == EdgeKind::outline ? kLiftOfOutline : kLiftOfCrossing);
     finder.each_piece([&](Corners c, glm::dvec3 p, glm::dvec3 q) {
         const auto& at = surface.mesh.points;
         if (p == q || is_section({at[c.x], at[c.y], at[c.z]}, p, q, planes, tolerance)) return;
-        lines.push_back({lifted(p, kLift * cell, camera), lifted(q, kLift * cell, camera), kind});
+        lines.push_back({lifted(p, lift, camera), lifted(q, lift, camera), kind});
     });
     return lines;
 }

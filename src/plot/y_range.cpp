@@ -16,14 +16,15 @@
 namespace sightline {
 namespace {
 
-constexpr int kDoublings = 16;        // of the range, before a surface counts as endless
 constexpr double kMargin = 1.0 / 32;  // of what was found
 
-/// Nodes of the search on x, y and z.
+/// Nodes of the search on x and z, and on y, and the ranges that are looked at: when a surface
+/// grows with every doubling, it counts as endless.
 struct Sampling {
     int columns = 0, levels = 0;
+    int smaller = 0, doublings = 0;
 };
-constexpr Sampling kCoarse{33, 65}, kFine{97, 193};
+constexpr Sampling kCoarse{33, 65, 5, 16}, kFine{97, 193, 0, 1};
 
 double at(glm::dvec2 range, int k, int n) { return range.x + (range.y - range.x) * k / (n - 1); }
 
@@ -57,10 +58,10 @@ private:
         // First within a cube; where there is nothing, in smaller and larger ones.
         double half = side_;
         Extent extent = search(half, sampling);
-        for (int k = 1; k <= 5 && extent.empty(); ++k)
+        for (int k = 1; k <= sampling.smaller && extent.empty(); ++k)
             extent = search(half = std::ldexp(side_, -4 * k), sampling);
         if (extent.empty()) half = side_;
-        for (int k = 0; k < kDoublings; ++k) {
+        for (int k = 0; k < sampling.doublings; ++k) {
             half *= 2;
             Extent next = search(half, sampling);
             if (next.empty()) {
