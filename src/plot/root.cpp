@@ -87,9 +87,10 @@ double usual_size(Evaluator& value, glm::dvec3 lo, glm::dvec3 hi) {
     constexpr int kSide = 12;
     std::vector<double> sizes;
     for (int k = 0; k < kSide * kSide * kSide; ++k) {
+        const glm::ivec3 node(k % kSide, k / kSide % kSide, k / (kSide * kSide));
         // Off the middle and off simple fractions, where values are often 0.
-        const glm::dvec3 t((k % kSide + 0.4142) / kSide, (k / kSide % kSide + 0.5774) / kSide,
-                           (k / kSide / kSide + 0.4472) / kSide);
+        const glm::dvec3 t =
+            (glm::dvec3(node) + glm::dvec3(0.4142, 0.5774, 0.4472)) / double{kSide};
         const double size = std::abs(value(glm::mix(lo, hi, t)));
         if (std::isfinite(size) && size > 0) sizes.push_back(size);
     }

@@ -20,9 +20,8 @@ std::vector<double> planes_within(std::vector<double> planes, double lo, double 
         if (std::abs(p - hi) <= apart) p = hi;
     }
     std::ranges::sort(planes);
-    const auto rest =
-        std::ranges::unique(planes, [&](double a, double b) { return b - a <= apart; });
-    planes.erase(rest.begin(), rest.end());
+    const auto same = [&](double a, double b) { return b - a <= apart; };
+    planes.erase(std::unique(planes.begin(), planes.end(), same), planes.end());
     return planes;
 }
 

@@ -136,8 +136,7 @@ private:
             if (edges_.size() != before) triangles_.push_back(t);
         }
         std::ranges::sort(edges_);
-        const auto rest = std::ranges::unique(edges_);
-        edges_.erase(rest.begin(), rest.end());
+        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
     }
 
     /// Follows the gradient to the surface; stays where that leads farther than `reach`.
