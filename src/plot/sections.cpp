@@ -258,9 +258,12 @@ void append_curves(std::span<const Field> fields, std::size_t k, const Surface& 
         }
     };
     const MeshedField meshed{fields[k], surface.mesh, surface.grid};
-    if (options.outline) append(find_outlines(meshed, camera, planes, options.threads));
+    std::vector<Field> others(fields.begin(), fields.end());
     for (std::size_t other = k + 1; other < fields.size(); ++other)
-        append(find_common_curves(meshed, fields[other], camera, planes, options.threads));
+        append(
+            find_common_curves(meshed, fields[other], {camera, planes, others, options.threads}));
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    if (options.outline) append(find_outlines(meshed, {camera, planes, others, options.threads}));
 }
 
 /// The counts that belong to the lines which are left.

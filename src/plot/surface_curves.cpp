@@ -33,8 +33,7 @@ constexpr double kZero = 0x1p-8;   // the same: too large to be near one
 constexpr double kDifference = 0x1p-10;
 // Of a cell. A surface with curvature k falls away from a line that touches it by k d^2 / 2 over a
 // length d, and the mesh is off the surface by k d^2 / 8 for edges of that length, the longest of
-// which are diagonals. A crossing touches lines of sight at its ends only, and is lifted less:
-// where it goes out of sight, it does so later by the lift.
+// which are diagonals. A crossing touches lines of sight at its ends only.
 constexpr double kLiftOfOutline = 1.75, kLiftOfCrossing = 1;
 constexpr double kOnSide = 1e-6;  // of a cell: a point so near to a side lies on it
 
@@ -209,46 +208,66 @@ bool is_section(const std::array<glm::dvec3, 3>& corners, glm::dvec3 p, glm::dve
     return false;
 }
 
-/// The point of the same line of sight that is nearer to the viewer by a length (or half as far
-/// away as the near plane, if that is less).
-glm::dvec3 lifted(glm::dvec3 p, double by, const Camera& camera) {
-    const glm::dvec3 view = glm::normalize(camera.view_vector(p));
-    const double room = camera.depth_of(p) - camera.near_plane;
-    const double length = std::min(by, 0.5 * room / glm::dot(view, camera.gaze()));
-    return length > 0 ? p - length * view : p;
-}
+/// Lifts points off surfaces.
+class Lifter {
+public:
+    Lifter(const CurveView& view, double by, double step)
+        : camera_(view.camera), by_(by), step_(step) {
+        for (const Field& other : view.others) others_.push_back(other.make());
+    }
+
+    /// The point of the same line of sight that is nearer to the viewer by a length (or half as far
+    /// away as the near plane, if that is less). It stays where that leads through one of the other
+    /// surfaces, which hides it then.
+    [[nodiscard]] glm::dvec3 lifted(glm::dvec3 p) {
+        const glm::dvec3 view = glm::normalize(camera_.view_vector(p));
+        const double room = camera_.depth_of(p) - camera_.near_plane;
+        const double length = std::min(by_, 0.5 * room / glm::dot(view, camera_.gaze()));
+        if (!(length > 0)) return p;
+        const glm::dvec3 lifted = p - length * view;
+        for (Evaluator& other : others_) {
+            const double here = other(p - std::min(step_, length) * view), there = other(lifted);
+            if ((here < 0 && there > 0) || (here > 0 && there < 0)) return p;
+        }
+        return lifted;
+    }
+
+private:
+    const Camera& camera_;
+    double by_, step_;
+    std::vector<Evaluator> others_;
+};
 
 std::vector<FreeLine> curves_of(const MeshedField& surface, const Field& second, Jumps jumps,
-                                EdgeKind kind, const Camera& camera, const SectionPlanes& planes,
-                                int threads) {
+                                EdgeKind kind, const CurveView& view) {
     CurveFinder finder(surface, second, jumps);
-    in_arena(threads, [&] { finder.run(); });
+    in_arena(view.threads, [&] { finder.run(); });
     std::vector<FreeLine> lines;
-    const double cell = largest_cell(surface.grid), tolerance = kOnSide * cell;
-    const double lift = cell * (kind == EdgeKind::outline ? kLiftOfOutline : kLiftOfCrossing);
+    const double cell = largest_cell(surface.grid);
+    Lifter lifter(view, cell * (kind == EdgeKind::outline ? kLiftOfOutline : kLiftOfCrossing),
+                  kDifference * cell);
     finder.each_piece([&](Corners c, glm::dvec3 p, glm::dvec3 q) {
         const auto& at = surface.mesh.points;
-        if (p == q || is_section({at[c.x], at[c.y], at[c.z]}, p, q, planes, tolerance)) return;
-        lines.push_back({lifted(p, lift, camera), lifted(q, lift, camera), kind});
+        if (p == q || is_section({at[c.x], at[c.y], at[c.z]}, p, q, view.planes, kOnSide * cell))
+            return;
+        lines.push_back({.from = lifter.lifted(p), .to = lifter.lifted(q), .kind = kind});
     });
     return lines;
 }
 
 }  // namespace
 
-std::vector<FreeLine> find_outlines(const MeshedField& surface, const Camera& camera,
-                                    const SectionPlanes& planes, int threads) {
+std::vector<FreeLine> find_outlines(const MeshedField& surface, const CurveView& view) {
     const double step = kDifference * largest_cell(surface.grid);
-    const Field growth = growth_of(surface.field, camera, step, CurveFinder::noise_of(surface));
+    const Field growth =
+        growth_of(surface.field, view.camera, step, CurveFinder::noise_of(surface));
     // Jumps of the gradient are creases, and outlines as well.
-    return curves_of(surface, growth, Jumps::count, EdgeKind::outline, camera, planes, threads);
+    return curves_of(surface, growth, Jumps::count, EdgeKind::outline, view);
 }
 
-std::vector<FreeLine> find_common_curves(const MeshedField& surface, const Field& other,
-                                         const Camera& camera, const SectionPlanes& planes,
-                                         int threads) {
-    return curves_of(surface, other, Jumps::are_ignored, EdgeKind::intersection, camera, planes,
-                     threads);
+std::vector<FreeLine> find_common_curves(const MeshedField& surface, const Field& second,
+                                         const CurveView& view) {
+    return curves_of(surface, second, Jumps::are_ignored, EdgeKind::intersection, view);
 }
 
 }  // namespace sightline

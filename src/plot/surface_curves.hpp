@@ -8,6 +8,7 @@
 // number of threads.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "plot/field.hpp"
@@ -24,13 +25,20 @@ struct MeshedField {
     const SectionGrid& grid;
 };
 
-/// Where lines of sight touch a surface: EdgeKind::outline.
-[[nodiscard]] std::vector<FreeLine> find_outlines(const MeshedField& surface, const Camera& camera,
-                                                  const SectionPlanes& planes, int threads);
+/// What curves are found for.
+struct CurveView {
+    const Camera& camera;
+    const SectionPlanes& planes;
+    std::span<const Field> others;  ///< surfaces that hide what is just behind them
+    int threads = 0;
+};
 
-/// Where a surface crosses another one: EdgeKind::intersection.
+/// Where lines of sight touch a surface: EdgeKind::outline.
+[[nodiscard]] std::vector<FreeLine> find_outlines(const MeshedField& surface,
+                                                  const CurveView& view);
+
+/// Where a surface crosses another one: EdgeKind::intersection. Both may be among view.others.
 [[nodiscard]] std::vector<FreeLine> find_common_curves(const MeshedField& surface,
-                                                       const Field& other, const Camera& camera,
-                                                       const SectionPlanes& planes, int threads);
+                                                       const Field& second, const CurveView& view);
 
 }  // namespace sightline

@@ -359,9 +359,9 @@ TEST(SectionsLines, CrossingSpheres) {
             glm::dot(p + glm::dvec3(0.5, 0, 0), view) < 0)
             half += step;
     }
-    EXPECT_NEAR(length_of(drawing.lines, EdgeKind::intersection, true), half, 0.03 * perimeter);
+    EXPECT_NEAR(length_of(drawing.lines, EdgeKind::intersection, true), half, 0.015 * perimeter);
     EXPECT_NEAR(length_of(drawing.lines, EdgeKind::intersection, false), perimeter - half,
-                0.03 * perimeter);
+                0.015 * perimeter);
 }
 
 TEST(SectionsLines, BordersAtTheBox) {
