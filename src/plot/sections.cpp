@@ -25,7 +25,6 @@ namespace {
 constexpr std::size_t kFirstCells = 64;                   // along the longest side
 constexpr std::size_t kMostCells = std::size_t{1} << 24;  // in a grid, but for what planes need
 constexpr double kMostTriangles = 1u << 22;               // of a surface
-constexpr int kRefinements = 2;
 constexpr double kMeshingShare = 0.5;  // of the whole work, for the progress function
 
 Error wrong(std::string message) { return {ErrorKind::bad_option, std::move(message)}; }
@@ -59,7 +58,7 @@ std::optional<std::size_t> refined(const SectionPlanes& planes, const SectionMes
                                    std::size_t cells, double error, double tolerance) {
     if (!(error > tolerance)) return std::nullopt;
     // The error is of the square of a cell, and so is the number of triangles.
-    double finer = static_cast<double>(cells) * std::sqrt(error / tolerance) * 1.05;
+    double finer = static_cast<double>(cells) * std::min(2.0, std::sqrt(error / tolerance) * 1.05);
     const double triangles = std::max(1.0, static_cast<double>(mesh.triangles.size()));
     finer = std::min(finer, static_cast<double>(cells) * std::sqrt(kMostTriangles / triangles));
     auto next =
@@ -74,13 +73,21 @@ Result<Surface> surface_of(const Field& field, const SectionPlanes& planes, cons
                            const std::function<bool(double)>& progress) {
     Surface surface;
     std::optional<std::size_t> cells = kFirstCells;
-    for (int round = 0; cells; ++round) {
-        surface.grid = grid_of(planes, *cells);
-        Result<SectionMesh> mesh = mesh_of_field(field, surface.grid, options.threads, progress);
+    double last_error = HUGE_VAL, last_cells = 1;
+    while (cells) {
+        const SectionGrid grid = grid_of(planes, *cells);
+        Result<SectionMesh> mesh = mesh_of_field(field, grid, options.threads, progress);
         if (!mesh) return mesh.error();
+        const double error = chord_error(field, *mesh, planes, camera);
+        // The error of a smooth surface falls with the square of the cells. Where it does not even
+        // fall with the cells the surface is as rough as the grid is fine (noise, waves shorter
+        // than a cell), and finer ones are no better.
+        const auto now = static_cast<double>(*cells);
+        if (error * now > last_error * last_cells) break;
+        last_error = error;
+        last_cells = now;
+        surface.grid = grid;
         surface.mesh = std::move(*mesh);
-        if (round == kRefinements) break;
-        const double error = chord_error(field, surface.mesh, planes, camera);
         cells = refined(planes, surface.mesh, *cells, error, options.tolerance);
     }
     surface.drawn.reserve(surface.mesh.triangles.size());
