@@ -293,10 +293,12 @@ Result<Drawing> trace_sections(std::span<const Field> fields, const Camera& came
                                const SectionOptions& options) {
     if (const Status fine = check(options); !fine) return fine.error();
     const SectionPlanes planes(options.box, options.x_planes, options.z_planes);
+    double reached = 0;  // finer meshes begin anew, what is told goes on
     const auto progress_of = [&](double from, double to) -> std::function<bool(double)> {
         if (!options.progress) return {};
-        return [&options, from, to](double share) {
-            return options.progress(from + share * (to - from));
+        return [&options, &reached, from, to](double share) {
+            reached = std::max(reached, from + share * (to - from));
+            return options.progress(reached);
         };
     };
     TraceOptions trace_options =
