@@ -73,9 +73,9 @@ struct DrawnLines {
     std::vector<EdgeKind> kind;
     std::vector<std::uint8_t> visible;  ///< 1, or 0 = hidden
     /// Source polygons of the edge, ascending: one (the other is kNone) or two; of an edge with
-    /// more faces the first two, of an intersection curve the two that cross.
+    /// more faces the first two, of an intersection curve the two that cross. Of a FreeLine none.
     std::vector<glm::uvec2> polygons;
-    std::vector<std::uint32_t> object;  ///< of the first polygon
+    std::vector<std::uint32_t> object;  ///< of the first polygon, or as FreeLine has it
 
     [[nodiscard]] std::size_t size() const { return from.size(); }
 };
@@ -137,6 +137,13 @@ enum class TraceMethod {
     pairwise,  ///< every edge and every polygon against every other one: the oracle
 };
 
+/// A line in space that belongs to no face: anything in front of it hides it.
+struct FreeLine {
+    glm::dvec3 from{}, to{};
+    EdgeKind kind = EdgeKind::axis;
+    std::uint32_t object = kNone;  ///< for DrawnLines
+};
+
 enum class FillStyle {
     none,      ///< no regions
     flat,      ///< all of one light grey
@@ -154,6 +161,8 @@ struct TraceOptions {
     /// Called now and then, from any thread but one at a time, with the share of the work that is
     /// done, 0..1. When it answers false, the work ends.
     std::function<bool(double)> progress;
+    /// Drawn with the edges, cut off by the view volume and by the page as they are.
+    std::vector<FreeLine> free_lines;
 };
 
 /// The camera's scene on a page: as project() makes it for pictures, but with as many steps a

@@ -18,14 +18,16 @@ namespace {
 
 constexpr std::size_t kGrain = 256;  // edges that a task takes at a time
 
-/// The ends of an edge of the scene on the page; nothing when it lies outside.
+/// The ends of a line on the page; nothing when it lies outside.
+using ScreenLine = std::optional<std::pair<ScreenPoint, ScreenPoint>>;
+
+/// The lines of the scene's edges.
 class EdgeProjector {
 public:
     explicit EdgeProjector(const ScreenScene& page)
         : page_(page), transform_(page_transform(page)) {}
 
-    [[nodiscard]] std::optional<std::pair<ScreenPoint, ScreenPoint>> ends(std::uint32_t a,
-                                                                          std::uint32_t b) const {
+    [[nodiscard]] ScreenLine ends(std::uint32_t a, std::uint32_t b) const {
         const ScreenPoint &p = page_.point(a), &q = page_.point(b);
         if (p.x != kOutside && q.x != kOutside) return std::pair(p, q);
         return clip_line(transform_, page_.scene().positions[a], page_.scene().positions[b]);
@@ -76,6 +78,7 @@ TaskParts find_parts_of(const ScreenScene& page, const PageEdges& edges, std::si
 
 /// The polygons of an edge, for DrawnLines.
 glm::uvec2 polygons_of(const Scene& scene, std::span<const std::uint32_t> faces) {
+    if (faces.empty()) return glm::uvec2(kNone);
     glm::uvec2 polygons(scene.triangle_polygon[faces[0]], kNone);
     for (const std::uint32_t face : faces.subspan(1)) {
         const std::uint32_t polygon = scene.triangle_polygon[face];
@@ -109,7 +112,7 @@ public:
         add(edge_->q, true);
         const auto faces = edges_.faces_of(*edge_);
         polygons_ = polygons_of(page_.scene(), faces);
-        object_ = page_.scene().object_of(faces[0]);
+        object_ = faces.empty() ? edge_->object : page_.scene().object_of(faces[0]);
         for (const Part& part : parts_) append(part, keep_hidden);
     }
 
@@ -174,17 +177,28 @@ private:
 
 PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options) {
     PageEdges all;
-    if (options.edges.empty()) return all;
-    SceneEdges found = find_edges(page, options.edges, options.crease_angle, options.threads);
-    const EdgeProjector projector(page);
-    all.edges.reserve(found.edges.size());
-    for (const SceneEdge& edge : found.edges) {
-        const auto ends = projector.ends(edge.a, edge.b);
-        if (!ends || (ends->first.x == ends->second.x && ends->first.y == ends->second.y)) continue;
-        all.edges.push_back(
-            {ends->first, ends->second, edge.kind, edge.culled, edge.first_face, edge.face_count});
+    const auto add = [&](const ScreenLine& ends, EdgeKind kind) {
+        if (!ends || (ends->first.x == ends->second.x && ends->first.y == ends->second.y))
+            return false;
+        all.edges.push_back({.p = ends->first, .q = ends->second, .kind = kind});
+        return true;
+    };
+    if (!options.edges.empty()) {
+        SceneEdges found = find_edges(page, options.edges, options.crease_angle, options.threads);
+        const EdgeProjector projector(page);
+        all.edges.reserve(found.edges.size() + options.free_lines.size());
+        for (const SceneEdge& edge : found.edges) {
+            if (!add(projector.ends(edge.a, edge.b), edge.kind)) continue;
+            all.edges.back().culled = edge.culled;
+            all.edges.back().first_face = edge.first_face;
+            all.edges.back().face_count = edge.face_count;
+        }
+        all.faces = std::move(found.faces);
     }
-    all.faces = std::move(found.faces);
+    const ScreenTransform transform = page_transform(page);
+    for (const FreeLine& line : options.free_lines)
+        if (add(clip_line(transform, line.from, line.to), line.kind))
+            all.edges.back().object = line.object;
     return all;
 }
 

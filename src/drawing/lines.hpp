@@ -16,7 +16,8 @@ struct PageEdge {
     ScreenPoint p, q;
     EdgeKind kind = EdgeKind::mesh;
     bool culled = false;  ///< wholly hidden: its faces are the removed back of something closed
-    std::uint32_t first_face = 0, face_count = 0;  ///< in PageEdges::faces
+    std::uint32_t first_face = 0, face_count = 0;  ///< in PageEdges::faces; none of a FreeLine
+    std::uint32_t object = kNone;                  ///< of a FreeLine
 };
 
 struct PageEdges {
@@ -29,8 +30,8 @@ struct PageEdges {
     }
 };
 
-/// The edges of the scene that the options ask for, without those seen end-on or outside of the
-/// page.
+/// The edges of the scene that the options ask for, then the free lines, without those seen end-on
+/// or outside of the page.
 [[nodiscard]] PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options);
 
 /// Appends the curves in which occluders cross.

@@ -9,4 +9,8 @@ namespace sightline {
 /// its triangles, and an object's positions are distinct (as SceneBuilder leaves them).
 void finish_joined_scene(Scene& scene);
 
+/// finish_scene() for curved surfaces, which have no coplanar faces to speak of. Precondition: an
+/// object's positions are distinct and its own.
+void finish_scene_without_sheets(Scene& scene);
+
 }  // namespace sightline

@@ -56,8 +56,10 @@ void find_degenerate(Scene& scene) {
     if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
 }
 
+enum class FindSheets { yes, no };
+
 /// What is derived, after the bounds of the triangles.
-void derive(Scene& scene, bool joined) {
+void derive(Scene& scene, bool joined, FindSheets sheets = FindSheets::yes) {
     add_quadrics(scene.quadrics, scene.bounds);
     scene.reach = reach_of(scene);
     find_degenerate(scene);
@@ -66,7 +68,10 @@ void derive(Scene& scene, bool joined) {
                         [](std::uint64_t sum, const Object& o) { return sum + o.polygon_count; });
     find_translucent_vertices(scene);
     // Neither looks at what the other finds.
-    tbb::parallel_invoke([&] { find_closed_objects(scene, joined); }, [&] { build_sheets(scene); });
+    tbb::parallel_invoke([&] { find_closed_objects(scene, joined); },
+                         [&] {
+                             if (sheets == FindSheets::yes) build_sheets(scene);
+                         });
 }
 
 }  // namespace
@@ -90,6 +95,11 @@ void finish_joined_scene(Scene& scene) {
         bounds_of_points(static_cast<std::uint32_t>(scene.positions.size()),
                          [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
     derive(scene, true);
+}
+
+void finish_scene_without_sheets(Scene& scene) {
+    scene.bounds = bounds_of_triangles(scene);
+    derive(scene, true, FindSheets::no);
 }
 
 }  // namespace sightline

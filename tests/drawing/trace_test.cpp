@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "drawing/pages.hpp"
 
@@ -277,6 +278,32 @@ TEST(Page, HasAsManyStepsAsFit) {
         EXPECT_GE(steps, 0x1p22) << size.width;
         EXPECT_LT(steps, 0x1p23) << size.width;
     }
+}
+
+TEST(Trace, FreeLinesAreHiddenByFaces) {
+    SceneBuilder b;
+    b.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+    const Scene scene = b.build();
+    CameraOptions camera_options;
+    camera_options.direction = glm::dvec3(0, 0, -1);
+    camera_options.projection = Projection::orthographic;
+    const Camera camera = must(make_camera(camera_options, {{-2, -2, -1}, {2, 2, 1}}, {400, 400}));
+    const ScreenScene screen = page(scene, camera);
+    TraceOptions options;
+    options.edges = {};
+    options.hidden = true;
+    options.free_lines = {{{-2, 0.5, -0.5}, {2, 0.5, -0.5}, EdgeKind::axis, 7},  // behind
+                          {{-2, 0.2, 0.5}, {2, 0.2, 0.5}},                       // in front
+                          {{0, 0, 9}, {0, 1, 9}},                                // out of view
+                          {{0, 0, -0.5}, {0, 0, 0.5}}};                          // seen end-on
+    const DrawnLines lines = must(trace(screen, options)).lines;
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines.visible, (std::vector<std::uint8_t>{1, 0, 1, 1}));
+    EXPECT_EQ(lines.object, (std::vector<std::uint32_t>{7, 7, 7, kNone}));
+    EXPECT_EQ(lines.polygons, std::vector<glm::uvec2>(4, glm::uvec2(kNone)));
+    const double step = std::ldexp(1.0, -screen.subpixel_bits());
+    EXPECT_LE(glm::distance(lines.from[1], camera.pixel_of({-1, 0.5, 0})), step);
+    EXPECT_LE(glm::distance(lines.to[1], camera.pixel_of({1, 0.5, 0})), step);
 }
 
 }  // namespace
