@@ -1,6 +1,7 @@
 // `sightline plot`: functions, implicit surfaces and terrain as families of curves.
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "errors.hpp"
@@ -67,6 +68,27 @@ void set_domain(const PlotCommandOptions& options, Subject& subject) {
     subject.domain.z = range(options.z, &HeightMap::z, options.x.value_or(kDefaultRange));
     if (options.y) subject.domain.y = *options.y;
     for (const HeightMap& map : subject.maps) subject.placed = subject.placed || map.placed;
+}
+
+/// The same things as surfaces on which a field is 0.
+std::vector<Field> implicit_fields(const PlotCommandOptions& options, const Subject& subject) {
+    std::vector<Field> fields;
+    std::size_t next_map = 0;
+    for (const PlotItem& item : options.items) {
+        if (item.formula && item.formula->kind == Formula::Kind::implicit) {
+            fields.push_back(field_of(item.formula->value, item.text));
+            continue;
+        }
+        const PlotField height =
+            item.formula ? field_of(*item.formula) : field_of(subject.maps[next_map++]);
+        fields.push_back({[height]() -> Evaluator {
+                              return [own = height.make()](glm::dvec3 at) {
+                                  return at.y - own(at.x, at.z);
+                              };
+                          },
+                          item.text});
+    }
+    return fields;
 }
 
 std::vector<PlotField> fields_of(const PlotCommandOptions& options, const Subject& subject) {
@@ -183,9 +205,10 @@ public:
         set_domain(options_, subject_);
         times_.load = watch_.lap();
         progress_.stage("sampling");
-        if (Status made = make_grid(); !made) return made.error();
+        const bool implicit = options_.has_implicit();
+        if (Status made = implicit ? make_fields() : make_grid(); !made) return made.error();
         times_.sample = watch_.lap();
-        if (Status drawn = draw(); !drawn) return drawn.error();
+        if (Status drawn = implicit ? draw_sections() : draw(); !drawn) return drawn.error();
         times_.draw = watch_.lap();
         return write();
     }
@@ -237,13 +260,69 @@ private:
         return set_camera();
     }
 
+    /// Ranges that nobody gave are those in which there is something.
+    Status make_fields() {
+        fields_ = implicit_fields(options_, subject_);
+        const bool has_maps = !subject_.maps.empty();
+        subject_.maps.clear();
+        PlotDomain& domain = subject_.domain;
+        if (!options_.y) {
+            domain.y = {INFINITY, -INFINITY};
+            for (const Field& field : fields_) {
+                const auto range = find_y_range(field, domain.x, domain.z);
+                if (!range) return range.error();
+                domain.y = {std::min(domain.y.x, range->x), std::max(domain.y.y, range->y)};
+            }
+        }
+        if (!options_.x && !options_.z && !has_maps) shrink_domain();
+        return set_camera();
+    }
+
+    void shrink_domain() {
+        PlotDomain& domain = subject_.domain;
+        for (int round = 0; round < 2; ++round) {
+            Box all = find_extent(fields_.front(), subject_.box());
+            for (std::size_t k = 1; k < fields_.size(); ++k) {
+                const Box part = find_extent(fields_[k], subject_.box());
+                all = {glm::min(all.lo, part.lo), glm::max(all.hi, part.hi)};
+            }
+            domain.x = {all.lo.x, all.hi.x};
+            domain.z = {all.lo.z, all.hi.z};
+            if (!options_.y) domain.y = {all.lo.y, all.hi.y};
+        }
+    }
+
+    Status draw_sections() {
+        show_progress(progress_, options_.plot);
+        const PlotAxes axes = make_axes();
+        SectionOptions sections;
+        const PlotCurves& curves = options_.curves;
+        if (curves.along_z) sections.x_planes = curve_places(subject_.domain.x, curves.count);
+        if (curves.along_x) sections.z_planes = curve_places(subject_.domain.z, curves.count);
+        sections.box = subject_.box();
+        sections.outline = options_.outline;
+        sections.boundary = true;
+        sections.hidden = options_.plot.hidden;
+        sections.tolerance = options_.plot.tolerance;
+        sections.threads = options_.common.threads;
+        sections.progress = options_.plot.progress;
+        sections.axes = axes.lines;
+        Result<Drawing> drawing = trace_sections(fields_, camera_, sections);
+        if (!drawing) return drawing.error();
+        drawing_ = std::move(*drawing);
+        drawing_.labels = axes.labels;
+        return success();
+    }
+
+    [[nodiscard]] PlotAxes make_axes() const {
+        if (!options_.axes) return {};
+        return axes_around(subject_.box(), camera_,
+                           {1, 1 / subject_.stretch, subject_.placed ? -1 : 1});
+    }
+
     Status draw() {
         show_progress(progress_, options_.plot);
-        PlotAxes axes;
-        if (options_.axes) {
-            axes = axes_around(subject_.box(), camera_,
-                               {1, 1 / subject_.stretch, subject_.placed ? -1 : 1});
-        }
+        PlotAxes axes = make_axes();
         Result<Drawing> drawing = options_.image_space
                                       ? image_space_horizon(grid_, camera_, options_.plot)
                                       : floating_horizon(grid_, camera_, options_.plot, axes.lines);
@@ -278,7 +357,8 @@ private:
     Subject subject_;
     Camera camera_;
     PageLayout layout_;
-    HeightGrid grid_;
+    HeightGrid grid_;            // of heights
+    std::vector<Field> fields_;  // of implicit surfaces
     Drawing drawing_;
 };
 

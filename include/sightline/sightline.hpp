@@ -16,6 +16,7 @@
 #include "sightline/plot.hpp"          // IWYU pragma: export
 #include "sightline/scene.hpp"         // IWYU pragma: export
 #include "sightline/screen_scene.hpp"  // IWYU pragma: export
+#include "sightline/sections.hpp"      // IWYU pragma: export
 #include "sightline/shading.hpp"       // IWYU pragma: export
 #include "sightline/stream.hpp"        // IWYU pragma: export
 #include "sightline/vector.hpp"        // IWYU pragma: export

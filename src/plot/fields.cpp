@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sightline/plot.hpp"
+#include "sightline/sections.hpp"
 
 namespace sightline {
 namespace {
@@ -120,6 +121,13 @@ PlotField field_of(const HeightMap& map) {
     field.z = shared->z;
     field.open_gaps = false;
     return field;
+}
+
+Field field_of(const Expression& expression, std::string name) {
+    return {[expression]() -> Evaluator {
+                return [own = expression](glm::dvec3 at) mutable { return own(at); };
+            },
+            std::move(name)};
 }
 
 Result<glm::dvec2> height_range(const std::vector<PlotField>& fields, const PlotDomain& domain) {

@@ -5,7 +5,7 @@
 // How this version differs: horizons fail where a surface has several heights at a place, so the
 // surfaces are meshed here, with edges along every curve, and the hidden lines of the mesh are
 // found exactly (see trace()). Outlines and crossings are curves of their own: surface_curves.hpp.
-#include "plot/sections.hpp"
+#include "sightline/sections.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,6 @@
 // ranges of y are looked at until what is found stops growing; a root between the highest two nodes
 // of a column then says how high it reaches there, and the range grows by margins until the surface
 // does not cross its end.
-#include "plot/y_range.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "plot/root.hpp"
+#include "sightline/sections.hpp"
 
 namespace sightline {
 namespace {

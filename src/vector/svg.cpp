@@ -157,6 +157,7 @@ void SvgWriter::put_object(std::uint32_t object) {
 /// Parts of a path, the last of which is kNone.
 void SvgWriter::put_sources(std::span<const std::uint32_t> parts) {
     out_.put("\" data-source=\"");
+    if (drawing_.lines.polygons[parts.front()].x == kNone) return;
     if (drawing_.lines.kind[parts.front()] >= EdgeKind::upper) parts = parts.first(2);
     for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
         if (k > 0) out_.put(' ');

@@ -11,7 +11,7 @@
 
 #include "plot/fields.hpp"
 #include "plot/section_grid.hpp"
-#include "plot/y_range.hpp"
+#include "sightline/sections.hpp"
 
 namespace sightline {
 namespace {

@@ -1,5 +1,5 @@
 // Plots of implicit surfaces against rays through their fields.
-#include "plot/sections.hpp"
+#include "sightline/sections.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include "plot/fields.hpp"
 #include "plot/section_grid.hpp"
 #include "plot/section_mesh.hpp"
-#include "plot/y_range.hpp"
 
 namespace sightline {
 namespace {

@@ -1,16 +1,43 @@
-// Plots of implicit surfaces: curves on them in planes, with hidden lines removed.
+// Plots of implicit surfaces F(x, y, z) = 0: curves on them in planes of constant x or z, with
+// hidden lines removed.
 #pragma once
 
 #include <array>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "plot/field.hpp"
 #include "sightline/drawing.hpp"
+#include "sightline/error.hpp"
+#include "sightline/formula.hpp"
+#include "sightline/scene.hpp"
 
 namespace sightline {
+
+/// The value at a point; NaN or infinite where there is none.
+using Evaluator = std::function<double(glm::dvec3)>;
+
+/// A function of space that several threads evaluate. Evaluators of one field always agree.
+struct Field {
+    std::function<Evaluator()> make;  ///< one for each thread; may be called by any of them
+    std::string name;                 ///< for messages
+};
+
+/// The field of an expression.
+[[nodiscard]] Field field_of(const Expression& expression, std::string name);
+
+/// The y between which a field is 0 over a part of the x-z plane (x: from, to; z likewise), with a
+/// little to spare. Found on a grid of columns: parts thinner than about 1/100 of the extents can
+/// be missed. Of a surface without end (a cylinder that stands, waves in all directions) as much as
+/// the larger extent of x and z, about y = 0. Error (bad_input): nothing was found.
+[[nodiscard]] Result<glm::dvec2> find_y_range(const Field& field, glm::dvec2 x, glm::dvec2 z);
+
+/// The part of a box in which a field is 0, with a little to spare on those sides that it does not
+/// reach; the box itself where nothing is found. Parts thinner than 1/64 of it can be missed.
+[[nodiscard]] Box find_extent(const Field& field, const Box& box);
 
 struct SectionOptions {
     std::vector<double> x_planes, z_planes;  ///< curves in x = const and z = const; any order
