@@ -32,8 +32,9 @@ demo: build
 gallery: build
 	scripts/run-readme.sh docs/gallery
 	scripts/run-readme.sh docs/drawings docs/drawings.md
+	scripts/run-readme.sh docs/plots docs/plots.md
 	scripts/draw-algorithms.sh docs/algorithms
-	echo 'The pictures of docs/gallery/, docs/drawings/ and docs/algorithms/ are new.'
+	echo 'The pictures of docs/gallery/, docs/drawings/, docs/plots/ and docs/algorithms/ are new.'
 
 test:
 	scripts/test.sh

@@ -130,8 +130,8 @@ Status set_heights(const PlotCommandOptions& options, const std::vector<PlotFiel
 CameraOptions camera_options(const PlotCommandOptions& options, const Subject& subject) {
     CameraOptions camera = options.camera;
     const bool aimed = camera.eye || camera.target || camera.direction || camera.view;
-    if (options.plot.ridges && !aimed && !options.from) {
-        camera.direction = kRidgeDirection;
+    if (options.plot.ridges && !options.from) {
+        if (!aimed) camera.direction = kRidgeDirection;
         if (!camera.projection) camera.projection = Projection::orthographic;
     }
     if (!options.from) return camera;
@@ -225,6 +225,13 @@ private:
             make_camera(camera_options(options_, subject_), subject_.box(), options_.resolution);
         if (!camera) return camera.error();
         camera_ = *camera;
+        const glm::dvec3 sight = camera_.view_vector(camera_.target);
+        if (options_.plot.ridges &&
+            (camera_.is_perspective() || std::abs(sight.x) > std::abs(sight.z))) {
+            return wrong_use(
+                "--style ridges is for parallel projections that look along z more than along x; "
+                "choose another --direction or --projection");
+        }
         const auto layout = lay_out(options_.drawing.page, camera_);
         if (!layout) return layout.error();
         layout_ = *layout;

@@ -30,3 +30,11 @@ done
 # shellcheck disable=SC2086 # words
 build/release/bin/sightline render samples/board.obj $look --algorithm abuffer \
     -o "$folder/abuffer-area.png"
+# Few curves: with the surface between them, and without.
+for way in "" -image; do
+    # shellcheck disable=SC2046 # a word or none
+    build/release/bin/sightline plot "y = 8*sin(hypot(x,z))/hypot(x,z)" --count 12 \
+        --projection orthographic --direction 0,-0.35,-1 --axes none --zoom 1.6 \
+        --resolution 480x300 --background '#ffffff' $([ -z "$way" ] || echo --image-space) \
+        -o "$folder/floating-horizon$way.png" --quiet
+done

@@ -12,6 +12,7 @@ import math
 import pathlib
 import struct
 import sys
+import zlib
 
 TAU = 2 * math.pi
 
@@ -454,6 +455,39 @@ def terrain():
     return {"terrain.ply": ply("A height field.", properties, rows, faces)}
 
 
+def mountains():
+    """A height map, 16-bit grey: ridges where octaves of noise change their sign, higher the nearer
+    to the middle, so that there is a summit to look from."""
+    side, octaves = 400, 8
+
+    def height(x, y):
+        total, share, step, weight = 0.0, 1.0, 4.0 / side, 1.0
+        for octave in range(octaves):
+            ridge = 1 - abs(2 * noise(x * step + 17 * octave, y * step + 31 * octave) - 1)
+            ridge *= ridge * weight
+            weight = min(1.0, 1.6 * ridge)
+            total += share * ridge
+            share *= 0.48
+            step *= 2.03
+        away = math.hypot(x - side / 2, y - side / 2) / side
+        return total * (1.15 - 1.1 * away)
+
+    heights = [[height(x, y) for x in range(side)] for y in range(side)]
+    low, high = min(map(min, heights)), max(map(max, heights))
+    rows = b"".join(b"\0" + struct.pack(f">{side}H", *(
+        round(3000 * (h - low) / (high - low)) for h in row)) for row in heights)
+
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data
+                + struct.pack(">I", zlib.crc32(kind + data)))
+
+    # Zlib's bytes may differ from one version to the next, those of stored blocks do not; but they
+    # would be twice as many, and pictures are read by what they show.
+    return {"mountains.png": b"\x89PNG\r\n\x1a\n"
+            + chunk(b"IHDR", struct.pack(">2I5B", side, side, 16, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")}
+
+
 def staircase():
     """A spiral staircase: two meshes, placed many times by the nodes of a binary glTF file."""
     treads, turn, rise = 22, math.radians(18), 0.2
@@ -527,7 +561,8 @@ def main():
     default = pathlib.Path(__file__).resolve().parent.parent / "samples"
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (knot, bracket, house, pawn, chess, crossing, tee, decal, terrain, staircase):
+    for make in (knot, bracket, house, pawn, chess, crossing, tee, decal, terrain, mountains,
+                 staircase):
         for name, content in make().items():
             (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
 

@@ -209,6 +209,7 @@ void HorizonSweep::each_part(std::size_t layer, const Edge& edge, const What& wh
 void HorizonSweep::pass_row(std::size_t column, const Row& row, bool backwards) {
     const HeightGrid& grid = plan_.grid;
     const LineUse use = (view_.along_x() ? grid.column_use : grid.row_use)[row.index];
+    if (plan_.options.ridges && use == LineUse::none) return;
     const std::uint32_t number =
         (view_.along_x() ? plan_.column_numbers : plan_.row_numbers)[row.index];
     pass([&](std::size_t layer) { return across_edge(layer, column, row); },

@@ -29,14 +29,10 @@ double height_at(const HeightMap& map, double x, double z) {
                  t = (z - map.z[k]) / (map.z[k + 1] - map.z[k]);
     const double* low = map.y.data() + k * map.x.size() + i;
     const double* high = low + map.x.size();
-    // Nodes with no share in it may be missing.
-    if (s == 0 && t == 0) return low[0];
-    if (s >= t) {
-        const double y = low[0] + s * (low[1] - low[0]);
-        return t == 0 ? y : y + t * (high[1] - low[1]);
-    }
-    const double y = low[0] + t * (high[0] - low[0]);
-    return s == 0 ? y : y + s * (high[1] - high[0]);
+    // Nodes that have no share in it may be missing.
+    const auto part = [](double share, double y) { return share > 0 ? share * y : 0.0; };
+    if (s >= t) return part(1 - s, low[0]) + part(s - t, low[1]) + part(t, high[1]);
+    return part(1 - t, low[0]) + part(t - s, high[0]) + part(s, high[1]);
 }
 
 // -- range ----------------------------------------------------------------------------------------

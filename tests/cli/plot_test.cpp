@@ -10,7 +10,7 @@ using nlohmann::json;
 
 class PlotCommand : public ProgramTest {
 protected:
-    [[nodiscard]] json report(std::vector<std::string> words) const {
+    json report(std::vector<std::string> words) const {
         words.insert(words.begin(), "plot");
         words.push_back("--json");
         const Outcome outcome = run(words);
@@ -114,6 +114,20 @@ TEST_F(PlotCommand, Styles) {
     EXPECT_NE(a, b);
 }
 
+TEST_F(PlotCommand, ImplicitSurfacesInTheBoxThatTheyFill) {
+    const json told = report({"x^2 + y^2 + z^2 = 4", "--count", "9", "-o", "a.svg"});
+    EXPECT_GT(told["visible_paths"], 9);
+    const std::string svg = read("a.svg");
+    EXPECT_NE(svg.find("class=\"outline\""), std::string::npos);
+    EXPECT_NE(svg.find(">2</text>"), std::string::npos);
+    EXPECT_EQ(svg.find(">3</text>"), std::string::npos);
+    EXPECT_EQ(svg.find("4294967295"), std::string::npos);
+    report({"x^2 + y^2 + z^2 = 4", "--no-outline", "-o", "b.svg"});
+    EXPECT_EQ(read("b.svg").find("class=\"outline\""), std::string::npos);
+    report({"x^2 + y^2 + z^2 = 4", "y = x/2", "--lines", "both", "-o", "c.svg"});
+    EXPECT_NE(read("c.svg").find("class=\"intersection\""), std::string::npos);
+}
+
 TEST_F(PlotCommand, TheSameBytesForAnyThreads) {
     for (const char* threads : {"1", "5"})
         report({kRipple, "y = x*z/20", "--lines", "both", "--threads", threads, "-o",
@@ -134,6 +148,10 @@ TEST_F(PlotCommand, BadInput) {
     fails({"y = x", "--count", "1"}, 2, "from 2");
     fails({"y = x", "--from", "0,1,0", "--eye", "1,2,3"}, 2, "--from");
     fails({"y = x", "--near", "1"}, 2, "--near");
+    fails({"y = x", "--style", "ridges", "--view", "left"}, 2, "ridges");
+    fails({"y = x", "--style", "ridges", "--from", "0,9,9"}, 2, "ridges");
+    fails({"x^2 + y^2 + z^2 = -1"}, 1, "has no points");
+    fails({"x^2 + y^2 = z", "--hatch"}, 2, "--hatch");
     fails({"y = x", "--scale", "1:2"}, 2, "perspective");
     write("one.csv", "1,2,3\n");
     fails({"one.csv"}, 1, "one.csv: has one row");

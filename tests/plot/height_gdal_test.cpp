@@ -60,20 +60,20 @@ TEST_F(HeightMapGdal, GridWithItsPlace) {
     const std::string path = folder_.write("m.asc", kGrid);
     const Result<HeightMap> map = load_height_map(path);
     // North at the top: the first row's centre has northing 2015.
-    expect_map(map, {505, 515, 525}, {-2015, -2005}, {1.5, 2, 3, 4, kNone, 6});
+    expect_map(map, {505, 515, 525}, {-2015, -2005}, {1.5, 2, 3, 4, kMissing, 6});
     EXPECT_TRUE(map->placed);
     HeightMapOptions options;
     options.cell = glm::dvec2(30, 20);
     options.height_scale = 2;
     options.no_data = 3;  // besides the file's own
     const Result<HeightMap> moved = load_height_map(path, options);
-    expect_map(moved, {0, 30, 60}, {0, 20}, {3, 4, kNone, 8, kNone, 12});
+    expect_map(moved, {0, 30, 60}, {0, 20}, {3, 4, kMissing, 8, kMissing, 12});
     EXPECT_FALSE(moved->placed);
 }
 
 TEST_F(HeightMapGdal, WithoutAPlace) {
     const Result<HeightMap> map = load_virtual("", "<NoDataValue>-9999</NoDataValue>");
-    expect_map(map, {0, 1, 2}, {0, 1}, {1.5, 2, 3, 4, kNone, 6});
+    expect_map(map, {0, 1, 2}, {0, 1}, {1.5, 2, 3, 4, kMissing, 6});
     EXPECT_FALSE(map->placed);
 }
 
@@ -101,7 +101,7 @@ TEST_F(HeightMapGdal, ScaleAndOffset) {
     options.no_data = 2;  // as it stands in the file
     options.height_scale = 10;
     expect_map(load_virtual("", band, options, "Float64"), {0, 1, 2}, {0, 1},
-               {1007.5, kNone, 1015, 1020, kNone, 1030});
+               {1007.5, kMissing, 1015, 1020, kMissing, 1030});
 }
 
 TEST_F(HeightMapGdal, NoDataOfFloats) {
@@ -111,7 +111,7 @@ TEST_F(HeightMapGdal, NoDataOfFloats) {
         folder_.write("f.asc",
                       "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
                       "1.5 2\n-3.4028234663852886e38 4\n");
-    expect_map(load_height_map(path, options), {0.5, 1.5}, {-1.5, -0.5}, {1.5, 2, kNone, 4});
+    expect_map(load_height_map(path, options), {0.5, 1.5}, {-1.5, -0.5}, {1.5, 2, kMissing, 4});
 }
 
 TEST_F(HeightMapGdal, WhatIsRefused) {

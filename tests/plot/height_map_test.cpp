@@ -35,9 +35,10 @@ TEST(HeightMapCsv, Separators) {
 TEST(HeightMapCsv, NoData) {
     const TemporaryFolder folder;
     expect_heights(load_height_map(folder.write("a.csv", "1,,nan\n,NA,na\nNaN,-nan, \ninf,-inf,7")),
-                   {1, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, 7});
+                   {1, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing,
+                    kMissing, kMissing, kMissing, 7});
     expect_heights(load_height_map(folder.write("b.csv", "1\t\t3\n\t\t6")),
-                   {1, kNone, 3, kNone, kNone, 6});
+                   {1, kMissing, 3, kMissing, kMissing, 6});
 }
 
 TEST(HeightMapCsv, ErrorsNameTheLine) {
@@ -71,12 +72,12 @@ TEST(HeightMap, Options) {
     options.height_scale = 0.5;
     options.cell = glm::dvec2(30, 20);
     const Result<HeightMap> map = load_height_map(path, options);
-    expect_heights(map, {0.5, 1, 1.5, 2, kNone, 3});
+    expect_heights(map, {0.5, 1, 1.5, 2, kMissing, 3});
     EXPECT_EQ(map->x, (std::vector<double>{0, 30, 60}));
     EXPECT_EQ(map->z, (std::vector<double>{0, 20}));
     options.height_scale = 1e306;
     expect_heights(load_height_map(folder.write("b.csv", "1 2\n3 1000"), options),
-                   {1e306, 2e306, 3e306, kNone});
+                   {1e306, 2e306, 3e306, kMissing});
 }
 
 TEST(HeightMap, WrongOptions) {
@@ -85,7 +86,7 @@ TEST(HeightMap, WrongOptions) {
     HeightMapOptions options;
     const double infinite = std::numeric_limits<double>::infinity();
     for (const glm::dvec2 cell :
-         {glm::dvec2(0, 1), glm::dvec2(1, -1), glm::dvec2(kNone, 1), glm::dvec2(1, infinite)}) {
+         {glm::dvec2(0, 1), glm::dvec2(1, -1), glm::dvec2(kMissing, 1), glm::dvec2(1, infinite)}) {
         options.cell = cell;
         const Result<HeightMap> map = load_height_map(path, options);
         ASSERT_FALSE(map.ok());
@@ -95,7 +96,7 @@ TEST(HeightMap, WrongOptions) {
     options.cell = glm::dvec2(1e308, 1);
     expect_error(load_height_map(path, options), "not apart");
     options = {};
-    for (const double scale : {infinite, kNone}) {
+    for (const double scale : {infinite, kMissing}) {
         options.height_scale = scale;
         const Result<HeightMap> map = load_height_map(path, options);
         ASSERT_FALSE(map.ok());

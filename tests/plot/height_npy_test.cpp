@@ -63,7 +63,7 @@ TEST(HeightMapNpy, HalfPrecision) {
     const std::vector<std::uint16_t> bits = {0x3c00, 0xc000, 0x7bff, 0x0001, 0x8400,
                                              0x3555, 0x7c00, 0x7e00, 0x0000};
     const std::vector<double> expected = {
-        1, -2, 65504, std::exp2(-24), -std::exp2(-14), 0.333251953125, kNone, kNone, 0};
+        1, -2, 65504, std::exp2(-24), -std::exp2(-14), 0.333251953125, kMissing, kMissing, 0};
     for (const bool big_endian : {false, true}) {
         expect_heights(load_height_map(folder.write(
                            "a.npy", npy(npy_header(big_endian ? ">f2" : "<f2", "(3,3)"),
@@ -89,10 +89,10 @@ TEST(HeightMapNpy, NotANumberIsNoData) {
     const float infinite = std::numeric_limits<float>::infinity();
     const std::string data = bytes_of<float>({1, nan, infinite, -infinite, 5, -9999.1f}, false);
     const std::string path = folder.write("a.npy", npy(npy_header("<f4"), data));
-    expect_heights(load_height_map(path), {1, kNone, kNone, kNone, 5, -9999.1f});
+    expect_heights(load_height_map(path), {1, kMissing, kMissing, kMissing, 5, -9999.1f});
     HeightMapOptions options;
     options.no_data = -9999.1;  // no float equals it
-    expect_heights(load_height_map(path, options), {1, kNone, kNone, kNone, 5, kNone});
+    expect_heights(load_height_map(path, options), {1, kMissing, kMissing, kMissing, 5, kMissing});
 }
 
 TEST(HeightMapNpy, WhatIsRefused) {

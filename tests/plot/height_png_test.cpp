@@ -108,11 +108,11 @@ TEST(HeightMapPng, TransparentIsNoData) {
         Png image = grey(bit_depth, {1, 9, 2, 0, 3, 1, 4, 255, 5, 0, 6, 3});
         image.color_type = PNG_COLOR_TYPE_GRAY_ALPHA;
         expect_heights(load_height_map(folder.write("alpha.png", encode(image))),
-                       {1, kNone, 3, 4, kNone, 6});
+                       {1, kMissing, 3, 4, kMissing, 6});
         image = grey(bit_depth, {1, 2, 3, 2, 5, 6});
         image.transparent = 2;
         expect_heights(load_height_map(folder.write("key.png", encode(image))),
-                       {1, kNone, 3, kNone, 5, 6});
+                       {1, kMissing, 3, kMissing, 5, 6});
     }
 }
 

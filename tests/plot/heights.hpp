@@ -15,7 +15,7 @@
 
 namespace sightline::testing {
 
-inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// The map has these heights, where NaN equals NaN.
 inline void expect_heights(const Result<HeightMap>& map, const std::vector<double>& expected) {
