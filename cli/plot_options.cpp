@@ -97,8 +97,9 @@ void read_item(OptionReader& reader, const std::string& text, PlotCommandOptions
         options.items.push_back({text, std::move(*formula)});
         return;
     }
-    const bool path_like = text.find_first_of("=()^*+ ") == std::string::npos &&
-                           (text.find('.') != std::string::npos || text.find('/') != text.npos);
+    const bool path_like =
+        text.find_first_of("=()^*+ ") == std::string::npos &&
+        (text.find('.') != std::string::npos || text.find('/') != std::string::npos);
     reader.fail(path_like
                     ? failure("{}: there is no such file; give a height map, or a formula such "
                               "as \"y = sin(x) * z\"",

@@ -35,11 +35,14 @@ struct ViewSweeps {
     std::vector<std::unique_ptr<HorizonSweep>> slabs;  // none where there is nothing to see
 };
 
-std::vector<ViewSweeps> plan_sweeps(const HorizonPlan& plan, const Camera& camera) {
+/// Plans for views whose depth grows along x, and along z.
+std::vector<ViewSweeps> plan_sweeps(const HorizonPlan& for_x, const HorizonPlan& for_z,
+                                    const Camera& camera) {
     std::vector<ViewSweeps> sweeps;
-    for (HorizonView& view : HorizonView::all(plan.grid, camera)) {
+    for (HorizonView& view : HorizonView::all(for_x.grid, for_z.grid, camera)) {
         ViewSweeps one;
         one.view = std::make_unique<HorizonView>(std::move(view));
+        const HorizonPlan& plan = one.view->along_x() ? for_x : for_z;
         const double from = one.view->from(), width = one.view->to() - from;
         for (std::size_t k = 0; k < kSlabs && width > 0; ++k) {
             const auto bound = [&](std::size_t n) {
@@ -56,7 +59,9 @@ std::vector<ViewSweeps> plan_sweeps(const HorizonPlan& plan, const Camera& camer
 
 // -- an eye over the grid -------------------------------------------------------------------------
 
-/// Where new nodes are wanted so that the strip in which the eye is becomes very narrow.
+/// Where new nodes are wanted so that the strip in which the eye is becomes very narrow. Only its
+/// cells near the eye belong to the views that need it, and only there the surface is another: flat
+/// across a diagonal that it is bent along.
 std::vector<double> nodes_beside(const std::vector<double>& nodes, double eye) {
     const double size = nodes.back() - nodes.front();
     std::vector<double> out;
@@ -100,10 +105,10 @@ Refined refined(const std::vector<double>& nodes, const std::vector<LineUse>& us
     return out;
 }
 
-/// The same surfaces with more nodes; cuts of the edges that get one are lost to the new nodes.
-HeightGrid with_nodes_beside(const HeightGrid& grid, glm::dvec3 eye) {
-    const Refined x = refined(grid.x, grid.column_use, eye.x),
-                  z = refined(grid.z, grid.row_use, eye.z);
+/// The same surfaces with more columns, or more rows; cuts of the edges that get a node are lost.
+HeightGrid with_nodes_beside(const HeightGrid& grid, glm::dvec3 eye, bool in_x) {
+    const Refined x = refined(grid.x, grid.column_use, in_x ? eye.x : INFINITY),
+                  z = refined(grid.z, grid.row_use, in_x ? INFINITY : eye.z);
     HeightGrid out{x.nodes, z.nodes, x.use, z.use, {}};
     const std::size_t columns = grid.x.size();
     for (const HeightLayer& layer : grid.layers) {
@@ -240,10 +245,10 @@ private:
 
 // -- everything -----------------------------------------------------------------------------------
 
-Result<Drawing> sweep_all(const HeightGrid& grid, const Camera& camera, const PlotOptions& options,
-                          const std::vector<AxisLine>& axes) {
-    const HorizonPlan plan(grid, camera, options);
-    std::vector<ViewSweeps> sweeps = plan_sweeps(plan, camera);
+Result<Drawing> sweep_all(const HeightGrid& for_x, const HeightGrid& for_z, const Camera& camera,
+                          const PlotOptions& options, const std::vector<AxisLine>& axes) {
+    const HorizonPlan plan_x(for_x, camera, options), plan_z(for_z, camera, options);
+    std::vector<ViewSweeps> sweeps = plan_sweeps(plan_x, plan_z, camera);
     std::vector<HorizonSweep*> jobs;
     WorkMeter meter(options.progress);
     std::uint64_t work = 0;
@@ -262,7 +267,7 @@ Result<Drawing> sweep_all(const HeightGrid& grid, const Camera& camera, const Pl
     Drawing drawing;
     drawing.resolution = camera.resolution;
     for (const HorizonSweep* job : jobs) append(drawing.lines, job->lines);
-    AxisPainter painter(grid, options, drawing.lines);
+    AxisPainter painter(for_x, options, drawing.lines);
     for (std::size_t k = 0; k < axes.size(); ++k)
         painter.draw(axes[k], static_cast<std::uint32_t>(k), sweeps);
     count_lengths(drawing.lines, drawing.counts);
@@ -290,8 +295,9 @@ Box HeightGrid::bounds() const {
 Result<Drawing> floating_horizon(const HeightGrid& grid, const Camera& camera,
                                  const PlotOptions& options, const std::vector<AxisLine>& axes) {
     if (camera.is_perspective() && is_near(grid, camera.eye))
-        return sweep_all(with_nodes_beside(grid, camera.eye), camera, options, axes);
-    return sweep_all(grid, camera, options, axes);
+        return sweep_all(with_nodes_beside(grid, camera.eye, true),
+                         with_nodes_beside(grid, camera.eye, false), camera, options, axes);
+    return sweep_all(grid, grid, camera, options, axes);
 }
 
 }  // namespace sightline

@@ -358,10 +358,10 @@ void HorizonSweep::put(std::size_t layer, const Edge& edge, const Part& part, co
     };
     if (turned != curve.backwards) {
         double last = end;
-        for (auto piece = seen.rbegin(); piece != seen.rend(); ++piece) {
-            put_piece(piece->t1, last, EdgeKind::upper, false);
-            put_seen(*piece);
-            last = piece->t0;
+        for (std::size_t k = seen.size(); k-- > 0;) {
+            put_piece(seen[k].t1, last, EdgeKind::upper, false);
+            put_seen(seen[k]);
+            last = seen[k].t0;
         }
         put_piece(begin, last, EdgeKind::upper, false);
         return;

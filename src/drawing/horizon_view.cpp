@@ -56,26 +56,33 @@ glm::dvec3 parallel_sight(const Camera& camera) {
 
 }  // namespace
 
-std::vector<HorizonView> HorizonView::all(const HeightGrid& grid, const Camera& camera) {
+std::vector<HorizonView> HorizonView::all(const HeightGrid& for_x, const HeightGrid& for_z,
+                                          const Camera& camera) {
     std::vector<HorizonView> views;
+    // Lines of sight cross no more than about one cell from one row to the next: that decides which
+    // view has them.
+    const double step_x = mean_step(for_z.x), step_z = mean_step(for_x.z);
     if (camera.is_perspective()) {
-        for (const bool along_x : {false, true})
-            for (const bool forward : {false, true})
-                views.push_back(HorizonView(grid, camera, along_x, forward));
+        for (const bool forward : {false, true}) {
+            views.push_back(HorizonView(for_z, camera, false, forward, step_x / step_z));
+            views.push_back(HorizonView(for_x, camera, true, forward, step_z / step_x));
+        }
         return views;
     }
     const glm::dvec3 d = parallel_sight(camera);
-    // Lines of sight cross no more than one cell from one row to the next.
-    const bool along_x = std::abs(d.x) * mean_step(grid.z) > std::abs(d.z) * mean_step(grid.x);
-    views.push_back(HorizonView(grid, camera, along_x, (along_x ? d.x : d.z) > 0));
+    const bool along_x = std::abs(d.x) * step_z > std::abs(d.z) * step_x;
+    views.push_back(
+        HorizonView(along_x ? for_x : for_z, camera, along_x, (along_x ? d.x : d.z) > 0, 0));
     return views;
 }
 
-HorizonView::HorizonView(const HeightGrid& grid, const Camera& camera, bool along_x, bool forward)
+HorizonView::HorizonView(const HeightGrid& grid, const Camera& camera, bool along_x, bool forward,
+                         double half_width)
     : camera_(&camera),
       along_x_(along_x),
       forward_(forward),
-      perspective_(camera.is_perspective()) {
+      perspective_(camera.is_perspective()),
+      half_width_(half_width) {
     origin_ = perspective_ ? camera.eye
                            : glm::dvec3(0.5 * (grid.x.front() + grid.x.back()), 0,
                                         0.5 * (grid.z.front() + grid.z.back()));
@@ -124,9 +131,6 @@ void HorizonView::set_axes(const HeightGrid& grid) {
     const double size = std::max(std::abs(across.back() - across.front()),
                                  std::abs(depths.back() - depths.front()));
     nearest_ = kNearest * size;
-    // Not wider than one cell from row to row: the other two views have the rest.
-    const double cells = mean_step(across) / mean_step(depths);
-    half_width_ = perspective_ ? cells : 0;
     for (std::size_t k = 0; k < depths_.size(); ++k) {
         const std::size_t row = forward_ ? k : depths_.size() - 1 - k;
         if (!perspective_ || depths_[row] >= nearest_) rows_.push_back(row);

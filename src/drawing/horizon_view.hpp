@@ -24,8 +24,11 @@ namespace sightline {
 
 class HorizonView {
 public:
-    /// All the views that are needed to see a grid through a camera.
-    [[nodiscard]] static std::vector<HorizonView> all(const HeightGrid& grid, const Camera& camera);
+    /// All the views that are needed to see a grid through a camera. Views whose depth grows along
+    /// x and along z may look at grids that differ in the nodes of that axis.
+    [[nodiscard]] static std::vector<HorizonView> all(const HeightGrid& for_x,
+                                                      const HeightGrid& for_z,
+                                                      const Camera& camera);
 
     /// Depth grows along x, else along z.
     [[nodiscard]] bool along_x() const { return along_x_; }
@@ -68,7 +71,8 @@ public:
     [[nodiscard]] std::optional<std::array<glm::dvec2, 2>> seen_line(const AxisLine& line) const;
 
 private:
-    HorizonView(const HeightGrid& grid, const Camera& camera, bool along_x, bool forward);
+    HorizonView(const HeightGrid& grid, const Camera& camera, bool along_x, bool forward,
+                double half_width);
     void set_parallel();
     void set_axes(const HeightGrid& grid);
     void set_range();

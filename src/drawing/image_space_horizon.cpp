@@ -114,7 +114,7 @@ Result<Drawing> image_space_horizon(const HeightGrid& grid, const Camera& camera
                                     const PlotOptions& options) {
     Drawing drawing;
     drawing.resolution = camera.resolution;
-    for (const HorizonView& view : HorizonView::all(grid, camera)) {
+    for (const HorizonView& view : HorizonView::all(grid, grid, camera)) {
         if (!(view.from() < view.to())) continue;
         ImageSpaceHorizon(grid, view, options, drawing.lines).run();
     }

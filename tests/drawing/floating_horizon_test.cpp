@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <map>
 
 #include "drawing/pages.hpp"
@@ -138,26 +139,83 @@ Lengths horizon_lengths(const HeightGrid& grid, const Camera& camera, bool visib
     return out;
 }
 
+/// The corners of a curve in space.
+std::vector<glm::dvec3> corners_of(const HeightGrid& grid, std::uint32_t object,
+                                   std::uint32_t curve) {
+    std::vector<glm::dvec3> out;
+    const std::vector<double>& y = grid.layers[object].y;
+    std::uint32_t number = 0;
+    for (std::size_t k = 0; k < grid.z.size(); ++k) {
+        if (grid.row_use[k] == LineUse::none || number++ != curve) continue;
+        for (std::size_t i = 0; i < grid.x.size(); ++i)
+            out.emplace_back(grid.x[i], y[grid.node(i, k)], grid.z[k]);
+    }
+    for (std::size_t i = 0; i < grid.x.size(); ++i) {
+        if (grid.column_use[i] == LineUse::none || number++ != curve) continue;
+        for (std::size_t k = 0; k < grid.z.size(); ++k)
+            out.emplace_back(grid.x[i], y[grid.node(i, k)], grid.z[k]);
+    }
+    return out;
+}
+
+/// Whether a triangle is in front of a point: A. Moeller, B. Trumbore, 1997, in double precision.
+bool is_hidden(const Scene& scene, glm::dvec3 p, glm::dvec3 to_eye) {
+    for (const Corners t : scene.triangles) {
+        const glm::dvec3 a = scene.positions[t.x], u = scene.positions[t.y] - a,
+                         v = scene.positions[t.z] - a, h = glm::cross(to_eye, v);
+        const double det = glm::dot(u, h);
+        if (std::abs(det) < 1e-14) continue;
+        const glm::dvec3 s = p - a, q = glm::cross(s, u);
+        const double at_u = glm::dot(s, h) / det, at_v = glm::dot(to_eye, q) / det;
+        if (at_u < 0 || at_v < 0 || at_u + at_v > 1) continue;
+        if (glm::dot(v, q) / det > 1e-7) return true;
+    }
+    return false;
+}
+
+/// Visible or hidden length of a curve, by lines of sight from very many of its points.
+double sampled_length(const HeightGrid& grid, const Mesh& mesh, const Camera& camera,
+                      std::pair<std::uint32_t, std::uint32_t> curve, bool visible) {
+    constexpr int kSamples = 20;  // of a piece
+    const std::vector<glm::dvec3> corners = corners_of(grid, curve.first, curve.second);
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+        const double pixels =
+            glm::length(camera.pixel_of(corners[k + 1]) - camera.pixel_of(corners[k]));
+        for (int n = 0; n < kSamples; ++n) {
+            const glm::dvec3 p = corners[k] + (n + 0.5) / kSamples * (corners[k + 1] - corners[k]);
+            if (is_hidden(mesh.scene, p, -camera.view_vector(p)) != visible)
+                sum += pixels / kSamples;
+        }
+    }
+    return sum;
+}
+
+/// Each curve to a thousandth of its length, visible and hidden. The page of exact hidden lines is
+/// fine, but a grid: where a surface is seen at a grazing angle, lines of sight decide instead.
 void expect_same(const HeightGrid& grid, const Mesh& mesh, const Camera& camera,
                  const std::string& what) {
+    const Lengths found[2] = {horizon_lengths(grid, camera, false),
+                              horizon_lengths(grid, camera, true)};
+    int asked = 0;
     for (const bool visible : {true, false}) {
-        const Lengths exact = exact_lengths(grid, mesh, camera, visible);
-        const Lengths found = horizon_lengths(grid, camera, visible);
-        double worst = 0;
-        std::uint32_t at = 0;
-        Lengths all = exact;
-        all.insert(found.begin(), found.end());
-        for (const auto& [curve, ignored] : all) {
-            const double a = exact.contains(curve) ? exact.at(curve) : 0,
-                         b = found.contains(curve) ? found.at(curve) : 0;
-            if (std::abs(a - b) > worst) {
-                worst = std::abs(a - b);
-                at = curve.second;
+        Lengths exact = exact_lengths(grid, mesh, camera, visible);
+        for (std::uint32_t object = 0; object < grid.layers.size(); ++object) {
+            for (std::uint32_t n = 0; n < 200; ++n) {
+                const std::pair curve(object, n);
+                const auto length_of = [&](const Lengths& all) {
+                    return all.contains(curve) ? all.at(curve) : 0.0;
+                };
+                const double whole = length_of(found[0]) + length_of(found[1]),
+                             ours = length_of(found[visible ? 1 : 0]);
+                if (std::abs(ours - length_of(exact)) <= 1e-3 * std::max(whole, 1.0)) continue;
+                ++asked;
+                EXPECT_NEAR(ours, sampled_length(grid, mesh, camera, curve, visible), 1e-3 * whole)
+                    << what << (visible ? ", visible" : ", hidden") << ", curve " << n;
             }
         }
-        // A curve is some hundreds of pixels long: 1e-3 of it.
-        EXPECT_LT(worst, 0.05) << what << (visible ? ", visible" : ", hidden") << ", curve " << at;
     }
+    EXPECT_LE(asked, 4) << what;
 }
 
 const std::vector<std::pair<std::string, Height>> kFunctions = {
