@@ -5,149 +5,19 @@
 #include <utility>
 
 #include "errors.hpp"
-#include "plot_options.hpp"
+#include "plot_subject.hpp"
 #include "progress.hpp"
 #include "report.hpp"
-#include "sightline/sightline.hpp"
 
 namespace sightline::cli {
 namespace {
-
-constexpr glm::dvec2 kDefaultRange(-10, 10);
-constexpr double kAutomaticHeight = 0.4;  // of the longer side of the domain
-const glm::dvec3 kRidgeDirection(0, -0.8, -1);
 
 struct Times {
     double load = 0, sample = 0, draw = 0, write = 0;
 };
 
-/// What is to be plotted, in the coordinates in which it is drawn.
-struct Subject {
-    std::vector<HeightMap> maps;  // in the order of the items; moved from where one is drawn alone
-    PlotDomain domain;
-    double stretch = 1;
-    bool placed = false;  // z is minus the northing
-
-    [[nodiscard]] Box box() const {
-        return {{domain.x.x, domain.y.x, domain.z.x}, {domain.x.y, domain.y.y, domain.z.y}};
-    }
-};
-
-Error nothing_there(const PlotCommandOptions& options, const PlotDomain& domain) {
-    return {
-        ErrorKind::bad_input,
-        fmt::format("{}: no height anywhere over x {:g}:{:g}, z {:g}:{:g}; choose another --x, "
-                    "--z or --y",
-                    options.items.front().text, domain.x.x, domain.x.y, domain.z.x, domain.z.y)};
-}
-
-Result<std::vector<HeightMap>> load_maps(const PlotCommandOptions& options) {
-    std::vector<HeightMap> maps;
-    for (const PlotItem& item : options.items) {
-        if (item.formula) continue;
-        Result<HeightMap> map = load_height_map(item.text, options.map);
-        if (!map) return map.error();
-        maps.push_back(std::move(*map));
-    }
-    return maps;
-}
-
-/// Ranges of x and z: as asked for, else those of the maps.
-void set_domain(const PlotCommandOptions& options, Subject& subject) {
-    const auto range = [&](const std::optional<glm::dvec2>& asked, auto nodes, glm::dvec2 other) {
-        if (asked) return *asked;
-        if (subject.maps.empty()) return other;
-        glm::dvec2 all(INFINITY, -INFINITY);
-        for (const HeightMap& map : subject.maps) {
-            all.x = std::min(all.x, (map.*nodes).front());
-            all.y = std::max(all.y, (map.*nodes).back());
-        }
-        return all;
-    };
-    subject.domain.x = range(options.x, &HeightMap::x, kDefaultRange);
-    subject.domain.z = range(options.z, &HeightMap::z, options.x.value_or(kDefaultRange));
-    if (options.y) subject.domain.y = *options.y;
-    for (const HeightMap& map : subject.maps) subject.placed = subject.placed || map.placed;
-}
-
-/// The same things as surfaces on which a field is 0.
-std::vector<Field> implicit_fields(const PlotCommandOptions& options, const Subject& subject) {
-    std::vector<Field> fields;
-    std::size_t next_map = 0;
-    for (const PlotItem& item : options.items) {
-        if (item.formula && item.formula->kind == Formula::Kind::implicit) {
-            fields.push_back(field_of(item.formula->value, item.text));
-            continue;
-        }
-        const PlotField height =
-            item.formula ? field_of(*item.formula) : field_of(subject.maps[next_map++]);
-        fields.push_back({[height]() -> Evaluator {
-                              return [own = height.make()](glm::dvec3 at) {
-                                  return at.y - own(at.x, at.z);
-                              };
-                          },
-                          item.text});
-    }
-    return fields;
-}
-
-std::vector<PlotField> fields_of(const PlotCommandOptions& options, const Subject& subject) {
-    std::vector<PlotField> fields;
-    std::size_t next_map = 0;
-    for (const PlotItem& item : options.items) {
-        PlotField field =
-            item.formula ? field_of(*item.formula) : field_of(subject.maps[next_map++]);
-        fields.push_back(std::move(field));
-    }
-    return fields;
-}
-
-PlotField stretched(PlotField field, double factor) {
-    if (factor == 1) return field;
-    field.make = [make = std::move(field.make), factor] {
-        return std::function<double(double, double)>(
-            [own = make(), factor](double x, double z) { return factor * own(x, z); });
-    };
-    return field;
-}
-
-/// Limits of the heights, then how much taller they are drawn.
-Status set_heights(const PlotCommandOptions& options, const std::vector<PlotField>& fields,
-                   Subject& subject) {
-    const auto found = height_range(fields, subject.domain);
-    if (!found) return nothing_there(options, subject.domain);
-    if (!options.y) subject.domain.y = *found;
-    const double height = subject.domain.y.y - subject.domain.y.x;
-    const double side =
-        std::max(subject.domain.x.y - subject.domain.x.x, subject.domain.z.y - subject.domain.z.x);
-    subject.stretch = options.stretch.value_or(height > 0 ? kAutomaticHeight * side / height : 1);
-    subject.domain.y *= subject.stretch;
-    return success();
-}
-
-// -- the camera -----------------------------------------------------------------------------------
-
-CameraOptions camera_options(const PlotCommandOptions& options, const Subject& subject) {
-    CameraOptions camera = options.camera;
-    const bool aimed = camera.eye || camera.target || camera.direction || camera.view;
-    if (options.plot.ridges && !options.from) {
-        if (!aimed) camera.direction = kRidgeDirection;
-        if (!camera.projection) camera.projection = Projection::orthographic;
-    }
-    if (!options.from) return camera;
-    camera.eye = *options.from * glm::dvec3(1, subject.stretch, subject.placed ? -1 : 1);
-    camera.projection = Projection::perspective;
-    if (camera.target || camera.direction || camera.view) return camera;
-    const glm::dvec3 middle = subject.box().centre();
-    const glm::dvec3 level(middle.x - camera.eye->x, 0, middle.z - camera.eye->z);
-    const bool at_middle =
-        std::hypot(level.x, level.z) < 1e-3 * glm::length(subject.box().extent());
-    camera.direction = at_middle ? glm::dvec3(0, 0, -1) : level;
-    return camera;
-}
-
 void warn_if_buried(const PlotCommandOptions& options, const std::vector<PlotField>& fields,
-                    const Subject& subject, Progress& progress) {
+                    const PlotSubject& subject, Progress& progress) {
     if (!options.from || options.common.quiet) return;
     const double z = subject.placed ? -options.from->z : options.from->z;
     for (const PlotField& field : fields) {
@@ -199,10 +69,9 @@ public:
 
     Result<int> run() {
         progress_.stage("loading");
-        Result<std::vector<HeightMap>> maps = load_maps(options_);
-        if (!maps) return maps.error();
-        subject_.maps = std::move(*maps);
-        set_domain(options_, subject_);
+        Result<PlotSubject> subject = load_subject(options_);
+        if (!subject) return subject.error();
+        subject_ = std::move(*subject);
         times_.load = watch_.lap();
         progress_.stage("sampling");
         const bool implicit = options_.has_implicit();
@@ -257,46 +126,20 @@ private:
         subject_.maps.clear();
         const Box bounds = grid_.bounds();
         subject_.domain.y = {bounds.lo.y, bounds.hi.y};
-        const double side = std::max(bounds.extent().x, bounds.extent().z);
-        const double height = bounds.extent().y;
-        subject_.stretch =
-            options_.stretch.value_or(height > 0 ? kAutomaticHeight * side / height : 1);
+        subject_.stretch = stretch_of(options_, subject_, bounds.extent().y);
         if (subject_.stretch != 1)
             for (double& y : grid_.layers.front().y) y *= subject_.stretch;
         subject_.domain.y *= subject_.stretch;
         return set_camera();
     }
 
-    /// Ranges that nobody gave are those in which there is something.
     Status make_fields() {
         fields_ = implicit_fields(options_, subject_);
         const bool has_maps = !subject_.maps.empty();
         subject_.maps.clear();
-        PlotDomain& domain = subject_.domain;
-        if (!options_.y) {
-            domain.y = {INFINITY, -INFINITY};
-            for (const Field& field : fields_) {
-                const auto range = find_y_range(field, domain.x, domain.z);
-                if (!range) return range.error();
-                domain.y = {std::min(domain.y.x, range->x), std::max(domain.y.y, range->y)};
-            }
-        }
-        if (!options_.x && !options_.z && !has_maps) shrink_domain();
+        if (Status set = set_extent(options_, fields_, has_maps, subject_); !set)
+            return set.error();
         return set_camera();
-    }
-
-    void shrink_domain() {
-        PlotDomain& domain = subject_.domain;
-        for (int round = 0; round < 2; ++round) {
-            Box all = find_extent(fields_.front(), subject_.box());
-            for (std::size_t k = 1; k < fields_.size(); ++k) {
-                const Box part = find_extent(fields_[k], subject_.box());
-                all = {glm::min(all.lo, part.lo), glm::max(all.hi, part.hi)};
-            }
-            domain.x = {all.lo.x, all.hi.x};
-            domain.z = {all.lo.z, all.hi.z};
-            if (!options_.y) domain.y = {all.lo.y, all.hi.y};
-        }
     }
 
     Status draw_sections() {
@@ -361,7 +204,7 @@ private:
     Progress& progress_;
     Stopwatch watch_;
     Times times_;
-    Subject subject_;
+    PlotSubject subject_;
     Camera camera_;
     PageLayout layout_;
     HeightGrid grid_;            // of heights

@@ -27,7 +27,7 @@ Box find_extent(const Field& field, const Box& box) {
             for (int i = 0; i < kNodes; ++i) {
                 const double f = value(node(box, {i, j, k}));
                 const auto sign = static_cast<signed char>(std::isfinite(f) ? (f < 0 ? -1 : 1) : 0);
-                const auto at = static_cast<std::size_t>(j * kNodes + i);
+                const std::size_t at = std::size_t(j) * kNodes + std::size_t(i);
                 here[at] = sign;
                 // Towards each of the three neighbours before it.
                 const auto look = [&](bool exists, signed char other, glm::ivec3 step) {
