@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTick = 7, kToNumber = 5, kToName = 34;  // pixels
 constexpr double kBetweenNumbers = 46;                    // pixels along an axis, at least
-constexpr double kNumberWidth = 26, kNumberHeight = 14;   // pixels
+constexpr double kDigitWidth = 7.5, kDigitHeight = 14;    // pixels
 constexpr double kShortestAxis = 40;
 
 /// The least nice number that is not below `least`.
@@ -41,6 +41,19 @@ glm::dvec2 side(glm::dvec2 vector) {
         return std::abs(part) < 0.38 * length ? 0.0 : part < 0 ? -1.0 : 1.0;
     };
     return {sign(vector.x), sign(vector.y)};
+}
+
+/// Left and right end of a word, about.
+glm::dvec2 across(const Label& label) {
+    const double width = kDigitWidth * static_cast<double>(label.text.size());
+    const double left = label.position.x - 0.5 * (1 - label.away.x) * width;
+    return {left, left + width};
+}
+
+bool overlap(const Label& a, const Label& b) {
+    const glm::dvec2 of_a = across(a), of_b = across(b);
+    return of_a.x < of_b.y && of_b.x < of_a.y &&
+           std::abs(a.position.y - b.position.y) < kDigitHeight;
 }
 
 class AxesBuilder {
@@ -136,11 +149,10 @@ private:
         const Resolution size = camera_.resolution;
         if (at.x < 0 || at.y < 0 || at.x > size.width || at.y > size.height) return;
         // Where two axes meet, the number of the first one stands there.
-        for (const Label& other : axes_.labels) {
-            const glm::dvec2 off = at - other.position;
-            if (std::abs(off.x) < kNumberWidth && std::abs(off.y) < kNumberHeight) return;
-        }
-        axes_.labels.push_back({at, away, std::move(text)});
+        const Label label{at, away, std::move(text)};
+        for (const Label& other : axes_.labels)
+            if (overlap(label, other)) return;
+        axes_.labels.push_back(label);
     }
 
     const Box& box_;
