@@ -22,7 +22,7 @@ protected:
 TEST_F(WrongUse, Commands) {
     expect_wrong({}, {"no command", "--help"});
     expect_wrong({"rendr", "cube.obj"}, {"'rendr'", "did you mean 'render'"});
-    expect_wrong({"plot", "cube.obj"}, {"unknown command 'plot'"});
+    expect_wrong({"sketch", "cube.obj"}, {"unknown command 'sketch'"});
     expect_wrong({"frobnicate"}, {"unknown command 'frobnicate'", "--help"});
     expect_wrong({"--quiet", "render"}, {"the command comes first", "render"});
     expect_wrong({"algorithms", "cube.obj"}, {"takes no arguments", "cube.obj"});
