@@ -86,7 +86,7 @@ private:
     /// A map that is drawn alone and as it is needs no fields.
     [[nodiscard]] bool is_plain_map() const {
         return options_.items.size() == 1 && subject_.maps.size() == 1 && !options_.x &&
-               !options_.z && !options_.y && !options_.from;
+               !options_.z && !options_.y;
     }
 
     Status set_camera() {
@@ -122,6 +122,8 @@ private:
     }
 
     Status make_map_grid() {
+        if (options_.from)
+            warn_if_buried(options_, {field_of(subject_.maps.front())}, subject_, progress_);
         grid_ = grid_of(std::move(subject_.maps.front()), options_.curves);
         subject_.maps.clear();
         const Box bounds = grid_.bounds();

@@ -119,7 +119,8 @@ public:
           tolerance_(tolerance),
           threads_(threads) {}
 
-    /// Halves the intervals between nodes as often as it is worth it.
+    /// Halves the intervals between nodes as often as it is worth it for fields without nodes of
+    /// their own.
     void refine(std::vector<double>& nodes, const Axis& axis) const {
         std::vector<Interval> open;
         for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
@@ -149,7 +150,7 @@ private:
                               [&](const tbb::blocked_range<std::size_t>& range) {
                                   std::vector<Function> own;
                                   for (const PlotField& field : fields_)
-                                      own.push_back(field.make());
+                                      if (field.x.empty()) own.push_back(field.make());
                                   for (std::size_t k = range.begin(); k != range.end(); ++k)
                                       errors[k] = error_of(open[k], axis, own, domain_, scale_);
                               });
@@ -358,7 +359,9 @@ HeightGrid sample(const std::vector<PlotField>& fields, const PlotDomain& domain
     const Places in_x = places_of(domain.x, curves.along_z, curves),
                  in_z = places_of(domain.z, curves.along_x, curves);
     const auto begin = [&](glm::dvec2 range, const Places& places, bool is_x) {
-        std::vector<double> nodes = curve_places(range, kFirstIntervals + 1);
+        const bool all_have_nodes =
+            std::ranges::none_of(fields, [](const PlotField& field) { return field.x.empty(); });
+        std::vector<double> nodes = curve_places(range, all_have_nodes ? 2 : kFirstIntervals + 1);
         nodes.insert(nodes.end(), places.at.begin(), places.at.end());
         for (const PlotField& field : fields) add_places(nodes, range, is_x ? field.x : field.z);
         tidy(nodes, places.at);

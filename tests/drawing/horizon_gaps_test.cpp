@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "drawing/pages.hpp"
 #include "sightline/plot.hpp"
@@ -96,10 +97,10 @@ Tally tally(const char* formula, const Camera& camera, const PlotDomain& domain)
 
 TEST(HorizonGaps, OneLooksThroughHolesAndJumps) {
     const char* const formulas[] = {
+        "y = 2*floor((x + z)/4)",                     // jumps aslant
         "y = sqrt(30 - x^2 - z^2)",                   // ends
         "y = sqrt(x^2 + z^2 - 9) - 3",                // a hole
         "y = 2*floor(z/3)",                           // jumps across the view
-        "y = 2*floor((x + z)/4)",                     // aslant
         "y = 1/(x - 0.5*z)",                          // a pole
         "y = x^2 + z^2 < 16 ? 3*cos(x/2) : 0.1*x*z",  // an island
         "y = sqrt(sin(x)*cos(z)) * 3",                // many pieces
@@ -108,10 +109,14 @@ TEST(HorizonGaps, OneLooksThroughHolesAndJumps) {
     domain.x = domain.z = {-8, 8};
     domain.y = {-6, 6};
     const Box box{{-8, -6, -8}, {8, 6, 8}};
-    for (const char* formula : formulas) {
+    // Under the sanitizers one formula will do, else few views of each.
+    const std::size_t some = testing::amount(std::size(formulas), std::size(formulas), 1);
+    for (const char* formula : std::span(formulas).first(some)) {
         Tally all;
-        for (const glm::dvec3 direction : {glm::dvec3(0, -0.4, -1), glm::dvec3(0, 0.3, -1),
-                                           glm::dvec3(0, -1.5, -1), glm::dvec3(0, -0.1, 1)}) {
+        const glm::dvec3 directions[] = {{0.6, -0.4, -1}, {-0.3, 0.3, -1}, {1, -0.5, 0.1},
+                                         {0, -0.4, -1},   {0.2, -1.5, -1}, {0, -0.1, 1}};
+        for (const glm::dvec3 direction :
+             std::span(directions).first(testing::amount(std::size(directions), 2, 1))) {
             CameraOptions options;
             options.projection = Projection::orthographic;
             options.direction = direction;
@@ -122,7 +127,7 @@ TEST(HorizonGaps, OneLooksThroughHolesAndJumps) {
         }
         // Where a slope is steeper than chords follow, near a vertical end, a few are off.
         EXPECT_LE(200 * all.wrong, all.right) << formula << ": " << all.wrong << " wrong";
-        EXPECT_GT(all.right, 20) << formula;
+        EXPECT_GT(all.right, 5) << formula;
     }
 }
 
