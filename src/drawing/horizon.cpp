@@ -23,12 +23,15 @@ Horizon::Horizon(double from, double to)
     pieces_.push_back({to, {0, 0, 0, 0, 0}, 0, kNo, true, true});
 }
 
-Horizon::Part Horizon::part_above(const Slope& line, const Piece& piece, double from, double to) {
+Horizon::Part Horizon::part_above(const Slope& line, const Piece& piece, double from, double to,
+                                  Ties ties) {
     if (piece.empty) return {from, to};
     const Slope& old = piece.line;
     const double slack =
         kRounding * (std::abs(line.v0) + std::abs(line.v1) + std::abs(old.v0) + std::abs(old.v1));
     const double at_from = line.at(from) - old.at(from), at_to = line.at(to) - old.at(to);
+    const bool tie = std::abs(at_from) <= slack && std::abs(at_to) <= slack;
+    if (tie) return ties == Ties::above ? Part{from, to} : Part{0, 0};
     if (at_from <= slack && at_to <= slack) return {0, 0};
     if (at_from >= -slack && at_to >= -slack) return {from, to};
     const double cross = std::clamp(from + (to - from) * (at_from / (at_from - at_to)), from, to);

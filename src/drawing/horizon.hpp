@@ -51,11 +51,14 @@ public:
     /// Nothing yet over from..to. Lines outside of it are left alone.
     Horizon(double from, double to);
 
+    /// Whether a line that lies on the horizon counts as above it.
+    enum class Ties { below, above };
+
     /// Tells of the parts of a line that are above the horizon, from left to right. Neighbours may
-    /// touch. A line that lies on the horizon is not above it.
+    /// touch.
     template <class Tell>
-    void above(const Slope& line, const Tell& tell) const;
-    /// The same, and then the horizon is where the line was above it.
+    void above(const Slope& line, const Tell& tell, Ties ties = Ties::below) const;
+    /// The same (ties are below), and then the horizon is where the line was above it.
     template <class Tell>
     void raise(const Slope& line, const Tell& tell);
     void raise(const Slope& line) {
@@ -93,7 +96,8 @@ private:
     };
 
     /// The part of a line that is above a piece, over from..to, where both are straight.
-    static Part part_above(const Slope& line, const Piece& piece, double from, double to);
+    static Part part_above(const Slope& line, const Piece& piece, double from, double to,
+                           Ties ties = Ties::below);
     [[nodiscard]] double end_of(Index piece) const { return pieces_[pieces_[piece].next].u; }
     /// Whether a line is below all that was noted.
     [[nodiscard]] bool is_far_below(const Slope& line) const {
@@ -126,13 +130,13 @@ private:
 // -- templates ------------------------------------------------------------------------------------
 
 template <class Tell>
-void Horizon::above(const Slope& line, const Tell& tell) const {
+void Horizon::above(const Slope& line, const Tell& tell, Ties ties) const {
     const double begin = std::max(line.u0, from_), end = std::min(line.u1, to_);
-    if (!(begin < end) || is_far_below(line)) return;
+    if (!(begin < end) || (ties == Ties::below && is_far_below(line))) return;
     Index p = find(begin);
     for (double u = begin; u < end; p = pieces_[p].next) {
         const double stop = std::min(end, end_of(p));
-        const Part part = part_above(line, pieces_[p], u, stop);
+        const Part part = part_above(line, pieces_[p], u, stop, ties);
         if (!part.none()) tell(Overlap{part.from, part.to, pieces_[p].empty});
         u = stop;
     }

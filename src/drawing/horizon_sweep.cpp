@@ -269,8 +269,9 @@ namespace {
 
 /// Two edges that lines of sight run along, one above the other. What is seen over the horizon of
 /// the other one's surface is seen only where it is over its edge, too; likewise what is under it.
-void hide_beside(const Slope& own, const Slope& other, std::vector<Seen>& seen) {
+void hide_beside(const Slope& own, const Slope& other, bool in_front, std::vector<Seen>& seen) {
     const double over0 = own.v0 - other.v0, over1 = own.v1 - other.v1;
+    if (over0 == 0 && over1 == 0 && !in_front) return seen.clear();
     const double cross = over0 * over1 < 0 ? over0 / (over0 - over1) : 1;
     for (Seen& part : seen) {
         if (part.side == Side::either) continue;
@@ -293,11 +294,12 @@ void HorizonSweep::others_hide(std::size_t layer, const Slope& line, std::vector
                                const Make& make) {
     for (std::size_t l = 0; l < skylines_.size() && !seen.empty(); ++l) {
         if (l == layer) continue;
-        skylines_[l].see(line, other_);
+        // Of surfaces that coincide the first one is in front.
+        skylines_[l].see(line, other_, l > layer ? Horizon::Ties::above : Horizon::Ties::below);
         if (skylines_[l].is_upright({line.u0, line.u1})) {
             const Edge other = make(l);
             if (is_whole(l, other))
-                hide_beside(line, line_of({other.seen[0], other.seen[1]}), other_);
+                hide_beside(line, line_of({other.seen[0], other.seen[1]}), l > layer, other_);
         }
         keep_common(seen);
     }

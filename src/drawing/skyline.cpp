@@ -68,11 +68,11 @@ void Skyline::collect(const Slope& line, std::vector<Seen>& out, const Walk& wal
     if (has_bands_) behind_bands(line, out);
 }
 
-void Skyline::see(const Slope& line, std::vector<Seen>& out) {
+void Skyline::see(const Slope& line, std::vector<Seen>& out, Horizon::Ties ties) {
     out.clear();
     if (is_upright({line.u0, line.u1})) return see_upright(line, out);
-    collect(line, out, [](const Horizon& horizon, const Slope& slope, const auto& tell) {
-        horizon.above(slope, tell);
+    collect(line, out, [ties](const Horizon& horizon, const Slope& slope, const auto& tell) {
+        horizon.above(slope, tell, ties);
     });
 }
 

@@ -27,7 +27,7 @@ public:
 
     /// Appends the parts of a line that are not hidden, in ascending order. A line straight up (u0
     /// = u1) is looked at there, where it is.
-    void see(const Slope& line, std::vector<Seen>& out);
+    void see(const Slope& line, std::vector<Seen>& out, Horizon::Ties ties = Horizon::Ties::below);
     /// The line hides from now on. Straight up it hides nothing: its neighbours do.
     void raise(const Slope& line);
     /// Both at once.

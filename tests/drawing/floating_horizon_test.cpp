@@ -285,6 +285,25 @@ TEST(FloatingHorizon, SurfacesThatCrossHideEachOther) {
     }
 }
 
+TEST(FloatingHorizon, OfSurfacesThatCoincideTheFirstIsSeen) {
+    const HeightGrid one = grid_of({terrain}, 9, 30, 5),
+                     two = grid_of({terrain, terrain}, 9, 30, 5);
+    for (const auto& [view, options] : views()) {
+        const Camera camera = testing::must(make_camera(options, one.bounds(), {1024, 768}));
+        const Lengths alone = horizon_lengths(one, camera, true),
+                      both = horizon_lengths(two, camera, true);
+        double second = 0;
+        for (const auto& [curve, length] : both) {
+            if (curve.first == 0) {
+                EXPECT_NEAR(length, alone.at(curve), 1e-6) << view;
+            } else {
+                second += length;
+            }
+        }
+        EXPECT_LT(second, 1) << view;
+    }
+}
+
 TEST(FloatingHorizon, AnEyeAmongTheHillsSeesAllAround) {
     const HeightGrid grid = grid_of({terrain}, 9, 60, 7);
     const Mesh mesh = mesh_of(grid);

@@ -78,7 +78,7 @@ Tally tally(const char* formula, const Camera& camera, const PlotDomain& domain)
     const glm::dvec2 zero = camera.pixel_of({0, 0, 0}), x = camera.pixel_of({1, 0, 0}) - zero,
                      y = camera.pixel_of({0, 1, 0}) - zero, z = camera.pixel_of({0, 0, 1}) - zero;
     Tally out;
-    const std::size_t every = testing::amount(1, 5, 40);
+    const std::size_t every = testing::amount(1, 5, 8);
     for (std::size_t k = 0; k < drawing.lines.size(); k += every) {
         const glm::dvec2 a = drawing.lines.from[k], b = drawing.lines.to[k];
         if (glm::length(b - a) < 4) continue;
@@ -127,7 +127,7 @@ TEST(HorizonGaps, OneLooksThroughHolesAndJumps) {
         }
         // Where a slope is steeper than chords follow, near a vertical end, a few are off.
         EXPECT_LE(200 * all.wrong, all.right) << formula << ": " << all.wrong << " wrong";
-        EXPECT_GT(all.right, 5) << formula;
+        EXPECT_GE(all.right, 5) << formula;
     }
 }
 
