@@ -321,13 +321,36 @@ private:
         sheets.ball[s] = glm::dvec4(middle, glm::length(at(rim) - middle));
     }
 
+    // Found by size; numbered in the order of their first members, so that who goes through the
+    // triangles goes through the sheets.
+    void number_in_order() {
+        Sheets& sheets = scene_.sheets;
+        std::vector<std::uint32_t> number(sheet_count_, kNone);
+        std::vector<std::uint32_t> next(sheet_count_);  // where a sheet's next member goes
+        sheets.first.push_back(static_cast<std::uint32_t>(sheets.members.size()));
+        std::vector<std::uint32_t> first{0};
+        for (std::uint32_t& s : sheets.of_triangle) {
+            if (s == kNone) continue;
+            if (number[s] == kNone) {
+                number[s] = static_cast<std::uint32_t>(first.size() - 1);
+                next[number[s]] = first.back();
+                first.push_back(first.back() + sheets.first[s + 1] - sheets.first[s]);
+            }
+            s = number[s];
+        }
+        for (std::uint32_t t = 0; t < sheets.of_triangle.size(); ++t)
+            if (const std::uint32_t s = sheets.of_triangle[t]; s != kNone)
+                sheets.members[next[s]++] = t;
+        sheets.first = std::move(first);
+    }
+
     void finish() {
         Sheets& sheets = scene_.sheets;
         if (sheet_count_ == 0) {
             sheets = {};
             return;
         }
-        sheets.first.push_back(static_cast<std::uint32_t>(sheets.members.size()));
+        number_in_order();
         sheets.frame.resize(sheet_count_);
         sheets.ball.resize(sheet_count_);
         tbb::parallel_for(std::size_t{0}, std::size_t{sheet_count_},

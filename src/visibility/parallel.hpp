@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -12,18 +13,38 @@
 
 namespace sightline {
 
-/// body(i) for i in 0 .. n-1, in any order; in ascending order on this thread under an observer.
+/// Whether a piece of work stays on the thread that asks for it.
+[[nodiscard]] inline bool works_alone(const ResolveOptions& options) {
+    return options.observer != nullptr || options.threads == 1;
+}
+
+/// How many threads there are for work that is not done alone.
+[[nodiscard]] inline std::uint32_t worker_count(const ResolveOptions& options) {
+    return static_cast<std::uint32_t>(
+        options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency());
+}
+
+/// body(i) for i in 0 .. n-1, in any order, by the threads of the arena that this is called in;
+/// alone: in ascending order on this thread.
 template <class Body>
-void for_each_index(std::uint32_t n, const ResolveOptions& options, const Body& body) {
-    if (options.observer != nullptr || options.threads == 1) {
+void each_index(std::uint32_t n, bool alone, const Body& body) {
+    if (alone) {
         for (std::uint32_t i = 0; i < n; ++i) body(i);
         return;
     }
-    in_arena(options.threads, [&] {
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n), [&](const auto& range) {
-            for (std::uint32_t i = range.begin(); i != range.end(); ++i) body(i);
-        });
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n), [&](const auto& range) {
+        for (std::uint32_t i = range.begin(); i != range.end(); ++i) body(i);
     });
+}
+
+/// The same by as many threads as the options say; in ascending order on this thread under an
+/// observer.
+template <class Body>
+void for_each_index(std::uint32_t n, const ResolveOptions& options, const Body& body) {
+    if (works_alone(options))
+        each_index(n, true, body);
+    else
+        in_arena(options.threads, [&] { each_index(n, false, body); });
 }
 
 /// Resolves the rows that `out` holds, band by band. Precondition: they begin with a band.

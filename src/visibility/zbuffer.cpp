@@ -18,19 +18,16 @@
 // are drawn one by one.
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <vector>
 
 #include "visibility/algorithms.hpp"
-#include "visibility/bins.hpp"
 #include "visibility/parallel.hpp"
 #include "visibility/zbuffer_stages.hpp"
+#include "visibility/zbuffer_workspace.hpp"
 
 namespace sightline {
 
@@ -40,30 +37,6 @@ using namespace zbuffer;
 
 constexpr float kNotShared = std::numeric_limits<float>::quiet_NaN();
 
-// Parts 0 .. tiles - 1 are the tiles' front sides, the rest their back sides.
-void sort_triangles(const Selected& selected, const GridUnits& grid, Bins<std::uint32_t>& bins) {
-    bins.sort(2 * grid.tile_count(), [&](const auto& visit) {
-        for (std::size_t i = 0; i < selected.count; ++i) {
-            if (selected.more[i] == 0) {  // most lie in one tile
-                visit(selected.tile[i], selected.triangle[i]);
-                continue;
-            }
-            const std::uint32_t columns = selected.more[i] & 0xFFFFu, rows = selected.more[i] >> 16;
-            for (std::uint32_t r = 0; r <= rows; ++r)
-                for (std::uint32_t c = 0; c <= columns; ++c)
-                    visit(selected.tile[i] + r * static_cast<std::uint32_t>(grid.tiles_x) + c,
-                          selected.triangle[i]);
-        }
-    });
-}
-
-void sort_points(const Points& points, const GridUnits& grid, Bins<Point>& bins) {
-    bins.sort(grid.tile_count(), [&](const auto& visit) {
-        for (std::size_t i = 0; i < points.count; ++i)
-            visit(points.place[i] >> (2 * kTileBits), {points.place[i], points.z[i], points.id[i]});
-    });
-}
-
 class ZBuffer {
 public:
     ZBuffer(const ScreenScene& screen, const ResolveOptions& options, Visibility& out)
@@ -72,21 +45,25 @@ public:
           out_(out),
           grid_(out.grid, screen.subpixel_bits()),
           counts_(grid_.tile_count()),
-          is_hit_(grid_.tile_count()) {}
+          alone_(works_alone(options)),
+          workers_(alone_ ? 1 : worker_count(options)) {}
 
     void run() {
         make_chunks();
         order_chunks();
-        make_shared_gradients();
-        triangle_bins_.resize(chunks_.size());
-        point_bins_.resize(chunks_.size());
-        for_each_index(static_cast<std::uint32_t>(chunks_.size()), options_,
-                       [&](std::uint32_t c) { take_chunk(c); });
-        share_tiles();
-        const int workers =
-            options_.threads > 0 ? options_.threads : tbb::this_task_arena::max_concurrency();
-        for_each_index(static_cast<std::uint32_t>(workers), options_,
-                       [&](std::uint32_t) { draw_tiles(); });
+        Workspace& space = *space_;
+        if (space.chunks.size() < chunks_.size()) space.chunks.resize(chunks_.size());
+        if (space.workers.size() < workers_) space.workers.resize(workers_);
+        const auto stages = [&] {
+            make_shared_gradients();
+            each_index(workers_, alone_, [&](std::uint32_t w) { take_chunks(space.workers[w]); });
+            share_tiles();
+            each_index(workers_, alone_, [&](std::uint32_t w) { draw_tiles(space.workers[w]); });
+        };
+        if (alone_)
+            stages();
+        else
+            in_arena(options_.threads, stages);
         report();
     }
 
@@ -129,7 +106,7 @@ private:
         const auto sheets = static_cast<std::uint32_t>(screen_.scene().sheets.count());
         shared_.resize(sheets);
         constexpr std::uint32_t kGrain = 1024;
-        for_each_index((sheets + kGrain - 1) / kGrain, options_, [&](std::uint32_t chunk) {
+        each_index((sheets + kGrain - 1) / kGrain, alone_, [&](std::uint32_t chunk) {
             const std::uint32_t end = std::min(sheets, (chunk + 1) * kGrain);
             for (std::uint32_t s = chunk * kGrain; s < end; ++s) {
                 const Plane& plane = screen_.sheet_plane(s);
@@ -142,22 +119,26 @@ private:
 
     [[nodiscard]] RasterInput input() const { return {screen_, grid_, shared_, options_.observer}; }
 
-    void take_chunk(std::uint32_t c) {
-        thread_local Selected selected;
-        thread_local Points points;
-        select_triangles(screen_, grid_, chunks_[c], selected);
-        draw_tiny(input(), selected, points);
-        sort_triangles(selected, grid_, triangle_bins_[c]);
-        sort_points(points, grid_, point_bins_[c]);
-        mark_hit_tiles(triangle_bins_[c], point_bins_[c]);
+    // One worker's share of the geometry stage.
+    void take_chunks(Worker& worker) {
+        const std::size_t tiles = grid_.tile_count();
+        worker.points.start(tiles);
+        worker.hit.assign(tiles, 0);
+        for (;;) {
+            const std::size_t c = next_chunk_.fetch_add(1, std::memory_order_relaxed);
+            if (c >= chunks_.size()) break;
+            TriangleBins& bins = (*space_).chunks[c];
+            take_triangles(input(), chunks_[c], worker.selected, worker.points);
+            bins.sort(worker.selected, chunks_[c], 2 * tiles);
+            bins.mark(worker.hit);
+        }
     }
 
-    void mark_hit_tiles(const Bins<std::uint32_t>& triangles, const Bins<Point>& points) {
-        const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
-        for (std::uint32_t t = 0; t < tiles; ++t)
-            if (!triangles.of(t).empty() || !triangles.of(t + tiles).empty() ||
-                !points.of(t).empty())
-                is_hit_[t].store(true, std::memory_order_relaxed);
+    [[nodiscard]] bool is_hit(std::uint32_t tile) const {
+        const std::span<const Worker> workers((*space_).workers.data(), workers_);
+        return std::any_of(workers.begin(), workers.end(), [tile](const Worker& w) {
+            return w.hit[tile] != 0 || w.points.any_in(tile);
+        });
     }
 
     [[nodiscard]] Area area_of(std::uint32_t index) const {
@@ -191,50 +172,46 @@ private:
     void share_tiles() {
         const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
         for (std::uint32_t t = 0; t < tiles; ++t)
-            if (options_.observer != nullptr || is_hit_[t].load(std::memory_order_relaxed))
+            if (options_.observer != nullptr || is_hit(t))
                 drawn_.push_back(t);
             else
                 empty_.areas.push_back(area_of(t));
     }
 
     // One worker's share of the raster stage. While a tile is drawn, the one before it is written.
-    void draw_tiles() {
-        thread_local const auto tiles = std::make_unique<Tile[]>(2);
+    void draw_tiles(Worker& worker) {
         TileWriter writer{out_.ids.data(), out_.depth.data(), grid_.columns, empty_, {}, {}};
         bool odd = false;
         for (;;) {
             const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
             if (k >= drawn_.size()) break;
-            Tile& tile = tiles[odd ? 1 : 0];
+            Tile& tile = worker.tiles[odd ? 1 : 0];
             odd = !odd;
-            draw_tile(drawn_[k], tile, writer);
+            draw_tile(drawn_[k], tile, worker, writer);
             write_drawn_tile(writer);
             writer.drawn = PendingRows(&tile, tile.area(), grid_.columns);
         }
         write_rest(writer);
     }
 
-    void draw_tile(std::uint32_t index, Tile& tile, TileWriter& writer) {
+    void draw_tile(std::uint32_t index, Tile& tile, Worker& worker, TileWriter& writer) {
         const Area area = area_of(index);
         tell_entered(area);
         place_tile(area, tile);
         clear_tile(tile);
         TileCounts counts;  // here, for neighbours in counts_ share a cache line among threads
         const RasterInput raster = input();
-        // One list, so that vectors are full across the chunks.
-        thread_local std::vector<std::uint32_t> triangles;
-        triangles.clear();
-        const auto append = [&](std::uint32_t chunk, std::uint32_t part) {
-            const std::span<const std::uint32_t> bin = triangle_bins_[chunk].of(part);
-            triangles.insert(triangles.end(), bin.begin(), bin.end());
-        };
-        for (const std::uint32_t c : front_to_back_) {
-            draw_points(raster, point_bins_[c].of(index), tile, counts);
-            append(c, index);
-        }
-        for (const std::uint32_t c : front_to_back_)
-            append(c, index + static_cast<std::uint32_t>(grid_.tile_count()));
-        draw_triangles(raster, triangles, tile, counts, writer);
+        for (std::uint32_t w = 0; w < workers_; ++w)
+            (*space_).workers[w].points.for_each_block(index, [&](const PointBlock& points) {
+                draw_points(raster, points, tile, counts);
+            });
+        worker.bins.clear();
+        for (const std::size_t part : {std::size_t{index}, index + grid_.tile_count()})
+            for (const std::uint32_t c : front_to_back_) {
+                const std::span<const TriangleItem> bin = (*space_).chunks[c].of(part);
+                if (!bin.empty()) worker.bins.push_back(bin);
+            }
+        draw_triangles(raster, worker.bins, tile, counts, writer);
         counts_[index] = counts;
     }
 
@@ -260,12 +237,12 @@ private:
     std::vector<TriangleRange> chunks_;
     std::vector<std::uint32_t> front_to_back_;
     std::vector<SharedGradient> shared_;
-    std::vector<Bins<std::uint32_t>> triangle_bins_;
-    std::vector<Bins<Point>> point_bins_;
     std::vector<TileCounts> counts_;
-    std::vector<std::atomic<bool>> is_hit_;  ///< tiles that something fell into
-    std::vector<std::uint32_t> drawn_;
-    std::atomic<std::size_t> next_{0};
+    bool alone_;
+    std::uint32_t workers_;
+    LentWorkspace space_;
+    std::vector<std::uint32_t> drawn_;  ///< tiles that something fell into
+    std::atomic<std::size_t> next_chunk_{0}, next_{0};
     EmptyTiles empty_;
 };
 

@@ -5,10 +5,10 @@
 // set-up. Here it is done for as many triangles as a vector has 32-bit lanes: corners are gathered,
 // edge functions taken at the corner of each box (all corners lie within 2^14 units of each other,
 // so 32 bits hold them exactly), planes in double precision (whose integers are exact below 2^53,
-// so these are the quotients of depth_gradient()), and what is empty or hidden is dropped.
-// Triangles whose box is one sample are then only compared; the others are walked cell by cell.
-// What does not fit (large, steep, pieces of clipped triangles) goes to draw_large(). Between
-// triangles a little of the tiles drawn before is written to the picture.
+// so these are the quotients of depth_gradient()), and what is empty or hidden is dropped. What is
+// left waits and is drawn by shape, cell by cell (zbuffer_cells-inl.hpp). What does not fit (large,
+// steep, pieces of clipped triangles) goes to draw_large(). Between triangles a little of the tiles
+// drawn before is written to the picture.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -21,6 +21,7 @@
 // foreach_target comes first.
 #include <hwy/highway.h>
 
+#include "visibility/zbuffer_cells-inl.hpp"
 #include "visibility/zbuffer_lanes-inl.hpp"
 #include "visibility/zbuffer_write-inl.hpp"
 
@@ -28,278 +29,270 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::zbuffer::HWY_NAMESPACE {
 namespace {
 
-/// Half-rows that are written to the picture after a vector of triangles, besides one a triangle.
-constexpr int kHalfRowsAVector = 4;
+/// After so many triangles, and after each vector of them, a little is written to the picture.
+constexpr std::size_t kWriteAfter = 4;
 
 /// Triangles between two updates of the hierarchical depth.
 constexpr std::uint32_t kRefreshAfter = 48;
 
-// The greatest depth that the tile holds under each box.
-HWY_INLINE VF depth_behind(const Tile& tile, const Lanes& t, M kept) {
-    constexpr int kBits = Tile::kBlockBits;
-    const VI c0 = hn::ShiftRight<kBits>(t.column0), r0 = hn::ShiftRight<kBits>(t.row0);
-    const VI c1 = hn::ShiftRight<kBits>(hn::Add(t.column0, t.columns));
-    const VI r1 = hn::ShiftRight<kBits>(hn::Add(t.row0, t.rows));
-    // The boxes of other lanes may lie anywhere.
-    const M adjacent = hn::And(hn::Lt(hn::Sub(c1, c0), set(2)), hn::Lt(hn::Sub(r1, r0), set(2)));
-    const M near_by = hn::And(kept, adjacent);
-    const auto at = [&](VI c, VI r) {
-        const VI block = hn::Add(hn::Mul(r, set(Tile::kBlocks)), c);
-        return hn::GatherIndex(kF, tile.block_max, hn::IfThenElseZero(near_by, block));
-    };
-    const VF most = hn::Max(hn::Max(at(c0, r0), at(c1, r0)), hn::Max(at(c0, r1), at(c1, r1)));
-    return hn::IfThenElse(hn::RebindMask(kF, near_by), most, hn::Set(kF, tile.tile_max));
-}
+// Reads bins one after the other, a vector of triangles at a time.
+class ItemReader {
+public:
+    explicit ItemReader(std::span<const std::span<const TriangleItem>> bins) : bins_(bins) {}
 
-struct Outcome {
-    M regular, large, hidden;
-};
-
-HWY_INLINE Outcome judge_depth(const Tile& tile, const Lanes& t, int step_bits, M kept) {
-    const DepthRange range = depth_over_box(t, step_bits);
-    M hidden = hn::Ne(t.number, t.number);
-    if (tile.knows_depth)
-        hidden = hn::RebindMask(
-            kI, hn::Gt(hn::Sub(range.least, hn::Set(kF, kUncertain)), depth_behind(tile, t, kept)));
-    const M usable = hn::And(kept, range.regular);
-    return {hn::AndNot(hidden, usable), hn::AndNot(range.regular, kept), hn::And(hidden, usable)};
-}
-
-// What the walk over a box needs, a triangle a lane.
-struct Stored {
-    HWY_ALIGN std::int32_t edges[9][kLanes];
-    HWY_ALIGN std::int32_t right[3][kLanes], below[3][kLanes];  // increments a cell
-    HWY_ALIGN std::int32_t number[kLanes], column0[kLanes], row0[kLanes], columns[kLanes],
-        rows[kLanes], dx0[kLanes], dy0[kLanes];
-    HWY_ALIGN float gx[kLanes], gy[kLanes], z0[kLanes];
-};
-
-HWY_INLINE void store(const Lanes& t, Stored& s) {
-    for (int k = 0; k < 3; ++k) {
-        hn::Store(t.edges.at[k], kI, s.edges[3 * k]);
-        hn::Store(t.edges.per_column[k], kI, s.edges[3 * k + 1]);
-        hn::Store(t.edges.per_row[k], kI, s.edges[3 * k + 2]);
-        hn::Store(hn::ShiftLeft<Tile::kCellBits>(t.edges.per_column[k]), kI, s.right[k]);
-        hn::Store(hn::ShiftLeft<Tile::kCellBits>(t.edges.per_row[k]), kI, s.below[k]);
+    // The next triangles, in the first lanes; `wanted` gets these lanes. False at the end.
+    HWY_INLINE bool next(const ScreenScene& screen, Triangles& t, M& wanted) {
+        const std::size_t lanes = hn::Lanes(kI);
+        while (bin_ < bins_.size() && at_ == bins_[bin_].size()) ++bin_, at_ = 0;
+        if (bin_ == bins_.size()) return false;
+        const TriangleItem* from = bins_[bin_].data() + at_;
+        std::size_t n = lanes;
+        if (bins_[bin_].size() - at_ >= lanes)
+            at_ += lanes;
+        else
+            from = collect(n);
+        const auto* words = reinterpret_cast<const std::uint32_t*>(from);
+        hn::Vec<Uints> c0, c1, c2, mark;
+        hn::LoadInterleaved4(kU, words, c0, c1, c2, mark);
+        t.number = hn::And(hn::BitCast(kI, mark), set(INT32_MAX));
+        t.sheet = sheets_of(screen, hn::BitCast(kI, mark));
+        t.corner[0] = hn::BitCast(kI, c0);
+        t.corner[1] = hn::BitCast(kI, c1);
+        t.corner[2] = hn::BitCast(kI, c2);
+        for (std::size_t k = 0; k < 3; ++k)
+            load_points(screen, words + k, 4, t.x[k], t.y[k], t.z[k]);
+        wanted = hn::FirstN(kI, n);
+        return true;
     }
-    hn::Store(t.number, kI, s.number);
-    hn::Store(t.column0, kI, s.column0);
-    hn::Store(t.row0, kI, s.row0);
-    hn::Store(t.columns, kI, s.columns);
-    hn::Store(t.rows, kI, s.rows);
-    hn::Store(t.dx0, kI, s.dx0);
-    hn::Store(t.dy0, kI, s.dy0);
-    hn::Store(t.gx, kF, s.gx);
-    hn::Store(t.gy, kF, s.gy);
-    hn::Store(t.z0, kF, s.z0);
-}
+
+private:
+    // From several bins. What is left in the lanes beyond are triangles, too, or point 0.
+    HWY_NOINLINE const TriangleItem* collect(std::size_t& n) {
+        const std::size_t lanes = hn::Lanes(kI);
+        for (n = 0; n < lanes && bin_ < bins_.size();) {
+            const std::size_t part = std::min(lanes - n, bins_[bin_].size() - at_);
+            // A handful: a call would take longer.
+            const hn::CappedTag<std::uint32_t, 4> d;
+            const auto* from = reinterpret_cast<const std::uint32_t*>(bins_[bin_].data() + at_);
+            auto* to = reinterpret_cast<std::uint32_t*>(items_ + n);
+            for (std::size_t i = 0; i < 4 * part; i += hn::Lanes(d))
+                hn::StoreU(hn::LoadU(d, from + i), d, to + i);
+            n += part;
+            at_ += part;
+            if (at_ == bins_[bin_].size()) ++bin_, at_ = 0;
+        }
+        return items_;
+    }
+
+    std::span<const std::span<const TriangleItem>> bins_;
+    std::size_t bin_ = 0, at_ = 0;
+    TriangleItem items_[kLanes] = {};
+};
 
 class Batch {
 public:
     Batch(const RasterInput& input, Tile& tile, TileCounts& counts, TileWriter& writer)
         : input_(input), grid_(input.grid), tile_(tile), counts_(counts), writer_(writer) {}
 
-    void draw(std::span<const std::uint32_t> triangles) {
-        for_each_vector(
-            input_.screen, triangles.size(),
-            [&](std::size_t i) HWY_ATTR { return fetch_from(triangles, i); },
-            [&](const Fetched& fetched, const CornerLanes& points) HWY_ATTR {
-                draw_vector(fetched, points);
-                write_some(writer_, kHalfRowsAVector);
-                if (tile_.drawn >= kRefreshAfter) refresh_depth();
-            });
+    // While a vector is worked on, the corners of the next are fetched, for they are scattered over
+    // memory.
+    void draw(std::span<const std::span<const TriangleItem>> bins) {
+        dirty_columns_ = dirty_rows_ = set(-1);
+        if (tile_.drawn >= kRefreshAfter) refresh_depth();
+        ItemReader reader(bins);
+        Triangles next;
+        M next_wanted;
+        bool more = reader.next(input_.screen, next, next_wanted);
+        while (more) {
+            const Triangles now = next;
+            const M wanted = next_wanted;
+            more = reader.next(input_.screen, next, next_wanted);
+            draw_vector(now, wanted);
+            write_some(writer_);
+            if (waiting_.vectors == Waiting::kVectors) draw_waiting();
+        }
+        draw_waiting();
     }
 
 private:
-    HWY_INLINE Fetched fetch_from(std::span<const std::uint32_t> triangles, std::size_t i) const {
-        const std::size_t lanes = hn::Lanes(kI);
-        if (i + lanes <= triangles.size())
-            return fetch(input_.screen, hn::BitCast(kI, hn::LoadU(kU, triangles.data() + i)),
-                         lanes);
-        HWY_ALIGN std::uint32_t tail[kLanes] = {};
-        std::copy(triangles.begin() + static_cast<std::ptrdiff_t>(i), triangles.end(), tail);
-        return fetch(input_.screen, hn::BitCast(kI, hn::Load(kU, tail)), triangles.size() - i);
+    HWY_INLINE void draw_vector(const Triangles& t, M wanted) {
+        const int step_bits = grid_.step_bits;
+        const auto whole_count = static_cast<std::int32_t>(input_.screen.scene().triangle_count());
+        const M whole = hn::And(wanted, hn::Lt(t.number, set(whole_count)));
+        M held;
+        const Boxes b = boxes_in(t, grid_, tile_.area(), held);
+        const M small = within(t, kSmallExtent);
+        draw_each(t.number, hn::AndNot(hn::And(whole, small), hn::And(wanted, held)));
+        M kept = hn::And(hn::And(whole, held), small);
+        if (hn::AllFalse(kI, kept)) return;
+        const M in_sheet = hn::Gt(t.sheet, set(-1));
+        kept = dismiss_hidden(t, b, kept, hn::AndNot(in_sheet, kept));
+        const VI doubled = doubled_area(t);
+        kept = hn::And(kept, hn::Ne(doubled, set(0)));
+        if (hn::AllFalse(kI, kept)) return;
+        const VI sx =
+            hn::Add(hn::ShiftLeftSame(b.column0, step_bits), set(grid_.position(tile_.column)));
+        const VI sy = hn::Add(hn::ShiftLeftSame(b.row0, step_bits), set(grid_.position(tile_.row)));
+        const Edges edges = edges_at(t, doubled, sx, sy, step_bits);
+        kept = hn::AndNot(excluded(edges, b), kept);
+        if (hn::AllFalse(kI, kept)) return;
+        Planes plane = own_planes(t, sx, sy), shared;
+        const M served = shared_planes(input_, t.sheet, sx, sy, shared);
+        if (!hn::AllFalse(kI, served)) plane = choose(served, shared, plane);
+        const DepthRange range = depth_over(plane, b.columns, b.rows, step_bits);
+        draw_each(t.number, hn::AndNot(range.regular, kept));
+        kept = hn::And(kept, range.regular);
+        if (!hn::AllFalse(kI, hn::And(in_sheet, kept)))
+            kept = dismiss(b, range.least, kept, hn::And(in_sheet, kept));
+        if (hn::AllFalse(kI, kept)) return;
+        note_drawn(b, kept);
+        waiting_.add(t.number, b, edges, plane, step_bits, kept);
     }
 
-    HWY_INLINE void draw_vector(const Fetched& fetched, const CornerLanes& points) {
-        draw_each(fetched.number, hn::AndNot(fetched.whole, fetched.wanted));
-        Lanes t;
-        M large;
-        const auto look = [&](const CornerLanes& p, const Lanes& boxes, M boxed)
-                              HWY_ATTR { return dismiss_hidden(p, boxes, boxed); };
-        const M kept = set_up_lanes(input_, tile_.area(), fetched, points, look, t, large);
-        draw_each(t.number, large);
-        if (hn::AllFalse(kI, kept)) return;
-        finish_vector(t, judge_depth(tile_, t, grid_.step_bits, kept));
+    // Lanes where an edge has all of the box on its outer side.
+    static HWY_INLINE M excluded(const Edges& edges, const Boxes& b) {
+        const VI zero = set(0);
+        VI worst = zero;  // negative where one has
+        for (int k = 0; k < 3; ++k) {
+            const VI across = hn::Max(zero, hn::Mul(edges.per_column[k], b.columns));
+            const VI down = hn::Max(zero, hn::Mul(edges.per_row[k], b.rows));
+            worst = hn::Or(worst, hn::Add(edges.at[k], hn::Add(across, down)));
+        }
+        return hn::Lt(worst, zero);
+    }
+
+    // The greatest depth that the tile holds under each box.
+    HWY_INLINE VF depth_behind(const Boxes& b, M kept) const {
+        constexpr int kBits = Tile::kBlockBits;
+        const VI c0 = hn::ShiftRight<kBits>(b.column0), r0 = hn::ShiftRight<kBits>(b.row0);
+        const VI c1 = hn::ShiftRight<kBits>(hn::Add(b.column0, b.columns));
+        const VI r1 = hn::ShiftRight<kBits>(hn::Add(b.row0, b.rows));
+        // The boxes of other lanes may lie anywhere.
+        const M adjacent = hn::Lt(hn::Max(hn::Sub(c1, c0), hn::Sub(r1, r0)), set(2));
+        const M near_by = hn::And(kept, adjacent);
+        const auto at = [&](VI c, VI r) HWY_ATTR {
+            const VI block = hn::Add(hn::Mul(r, set(Tile::kBlocks)), c);
+            return hn::GatherIndex(kF, tile_.block_max, hn::IfThenElseZero(near_by, block));
+        };
+        const VF most = hn::Max(hn::Max(at(c0, r0), at(c1, r0)), hn::Max(at(c0, r1), at(c1, r1)));
+        return hn::IfThenElse(hn::RebindMask(kF, near_by), most, hn::Set(kF, tile_.tile_max));
+    }
+
+    // Takes from `kept` the lanes of `asked` whose nearest depth is behind what the tile holds.
+    HWY_INLINE M dismiss(const Boxes& b, VF nearest, M kept, M asked) {
+        if (!tile_.knows_depth) return kept;
+        const VF depth = hn::Sub(nearest, hn::Set(kF, kUncertain));
+        const M hidden = hn::And(asked, hn::RebindMask(kI, hn::Gt(depth, depth_behind(b, kept))));
+        const auto count = static_cast<std::uint64_t>(hn::CountTrue(kI, hidden));
+        counts_.triangles += count;
+        counts_.hidden += count;
+        return hn::AndNot(hidden, kept);
     }
 
     // Hidden triangles, told by their nearest corner before planes are set up: no sample's true
     // depth is less. The conversion of z is off by at most 32, a stored depth by
     // kStoredDepthError, the difference by 64. Sheets' planes do not pass through the corners.
     static_assert(kUncertain - 64 - 32 > kStoredDepthError);
-    HWY_INLINE M dismiss_hidden(const CornerLanes& p, const Lanes& t, M kept) {
-        if (!tile_.knows_depth) return kept;
-        const VF nearest = hn::Sub(hn::ConvertTo(kF, least(p.z)), hn::Set(kF, kUncertain));
-        const M behind = hn::RebindMask(kI, hn::Gt(nearest, depth_behind(tile_, t, kept)));
-        const M hidden = hn::AndNot(sheet_lanes(input_, t.number), hn::And(kept, behind));
-        const auto count = static_cast<std::uint64_t>(std::popcount(bits_of(hidden)));
-        counts_.triangles += count;
-        counts_.hidden += count;
-        return hn::AndNot(hidden, kept);
+    HWY_INLINE M dismiss_hidden(const Triangles& t, const Boxes& b, M kept, M asked) {
+        return dismiss(b, hn::ConvertTo(kF, least(t.z)), kept, asked);
     }
 
-    void finish_vector(const Lanes& t, const Outcome& outcome) {
-        const std::uint32_t regular = bits_of(outcome.regular);
-        const auto drawn = static_cast<std::uint32_t>(std::popcount(regular));
-        const auto hidden = static_cast<std::uint64_t>(std::popcount(bits_of(outcome.hidden)));
-        counts_.triangles += drawn + hidden;
-        counts_.hidden += hidden;
-        tile_.drawn += drawn;
-        draw_each(t.number, outcome.large);
-        if (regular == 0) return;
-        store(t, stored_);
-        const M point = hn::Eq(hn::Or(t.columns, t.rows), set(0));
-        const std::uint32_t points = bits_of(hn::And(outcome.regular, point));
-        for (std::uint32_t rest = points; rest != 0; rest &= rest - 1)
-            draw_point(static_cast<std::size_t>(std::countr_zero(rest)));
-        for (std::uint32_t rest = regular & ~points; rest != 0; rest &= rest - 1) {
-            draw_box(static_cast<std::size_t>(std::countr_zero(rest)));
-            write_some(writer_, 1);
-        }
+    // Which blocks will have to be looked at again, as columns and rows of blocks: bits.
+    HWY_INLINE void note_drawn(const Boxes& b, M kept) {
+        const auto bits = [&](VI first, VI further) HWY_ATTR {
+            const VI one = set(1), two = set(2);
+            const VI begin = hn::Shl(one, hn::ShiftRight<Tile::kBlockBits>(first));
+            const VI end = hn::Shl(two, hn::ShiftRight<Tile::kBlockBits>(hn::Add(first, further)));
+            return hn::IfThenElseZero(kept, hn::Sub(end, begin));
+        };
+        dirty_columns_ = hn::Or(dirty_columns_, bits(b.column0, b.columns));
+        dirty_rows_ = hn::Or(dirty_rows_, bits(b.row0, b.rows));
+        const auto n = static_cast<std::uint32_t>(hn::CountTrue(kI, kept));
+        counts_.triangles += n;
+        tile_.drawn += n;
     }
 
     void draw_each(VI number, M chosen) {
-        if (hn::AllFalse(kI, chosen)) return;
+        if (HWY_LIKELY(hn::AllFalse(kI, chosen))) return;
         HWY_ALIGN std::int32_t numbers[kLanes];
         hn::Store(number, kI, numbers);
+        dirty_columns_ = dirty_rows_ = set(-1);
         for (std::uint32_t rest = bits_of(chosen); rest != 0; rest &= rest - 1)
             draw_large(input_, static_cast<std::uint32_t>(numbers[std::countr_zero(rest)]), tile_,
                        counts_);
     }
 
+    void draw_waiting() {
+        draw_slots<2, 2>(Waiting::two_by_two);
+        draw_slots<3, 2>(Waiting::three_by_two);
+        draw_slots<2, 3>(Waiting::two_by_three);
+        draw_slots<3, 3>(Waiting::three_by_three);
+        draw_slots<0, 0>(Waiting::larger);
+        waiting_.vectors = 0;
+        if (tile_.drawn >= kRefreshAfter) refresh_depth();
+    }
+
+    // Zero columns and rows of cells: any number.
+    template <int kColumns, int kRows>
+    HWY_INLINE void draw_slots(Waiting::Shape shape) {
+        const int step_bits = grid_.step_bits;
+        const Spot first = spot_of(0, step_bits);
+        for (std::size_t i = 0; i < waiting_.count[shape]; ++i) {
+            const auto slot = static_cast<std::size_t>(waiting_.slot[shape][i]);
+            bool doubtful = false;
+            for (std::size_t part = 0; part < Tile::kCell; part += hn::Lanes(kI)) {
+                const Spot spot = part == 0 ? first : spot_of(part, step_bits);
+                if constexpr (kColumns == 0)
+                    doubtful |= draw_larger(waiting_, slot, spot, step_bits, part, tile_);
+                else
+                    doubtful |=
+                        draw_shape<kColumns, kRows>(waiting_, slot, spot, step_bits, part, tile_);
+            }
+            if (HWY_UNLIKELY(doubtful)) settle(slot);
+            if (i % kWriteAfter == 0) write_some(writer_);
+        }
+        waiting_.count[shape] = 0;
+    }
+
     // Some of the triangle's samples are too close to call for floats: integers decide. What it
     // owns already stays as it is, for taking a minimum twice changes nothing.
-    HWY_NOINLINE void settle(std::size_t lane) {
-        draw_large(input_, static_cast<std::uint32_t>(stored_.number[lane]), tile_, counts_);
+    HWY_NOINLINE void settle(std::size_t slot) {
+        draw_large(input_, static_cast<std::uint32_t>(waiting_.number[slot]), tile_, counts_);
     }
 
-    // The box is one sample, and no edge has excluded it: the triangle covers it.
-    HWY_INLINE void draw_point(std::size_t lane) {
-        const float tx = stored_.gx[lane] * static_cast<float>(stored_.dx0[lane]);
-        const float ty = stored_.gy[lane] * static_cast<float>(stored_.dy0[lane]);
-        const float z = std::clamp(stored_.z0[lane] + (tx + ty), 0.0f, kStoredDepthMax);
-        const std::size_t at = Tile::index(stored_.column0[lane], stored_.row0[lane]);
-        const float old = tile_.depth[at];
-        if (z > old + kUncertain) return;
-        if (z < old - kUncertain) {
-            tile_.depth[at] = z;
-            tile_.ids[at] = static_cast<std::uint32_t>(stored_.number[lane]);
-            return;
-        }
-        settle(lane);
+    static std::uint32_t all_bits(VI v) {
+        HWY_ALIGN std::int32_t lanes[kLanes];
+        hn::Store(v, kI, lanes);
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < hn::Lanes(kI); ++i)
+            bits |= static_cast<std::uint32_t>(lanes[i]);
+        return bits;
     }
 
-    // All cells that the box meets: mostly no more than two by two, which are drawn to without a
-    // branch. Samples of a cell outside of the box are outside of the triangle, but for some beyond
-    // the picture's or the tile's border, which nobody reads.
-    HWY_INLINE void draw_box(std::size_t lane) {
-        bool doubtful = false;
-        for (std::size_t part = 0; part < Tile::kCell; part += hn::Lanes(kI))
-            doubtful |= draw_part(lane, part);
-        if (HWY_UNLIKELY(doubtful)) settle(lane);
-    }
-
-    // A triangle in a vector's part of a cell.
-    struct Walk {
-        VI e[3];
-        VI dx, dy;
-        VF gx, gy, z0;
-        hn::Vec<Uints> id;
-        hn::Mask<Floats> doubtful;
-    };
-
-    // The samples from `part` on in each cell. Returns whether one was too close to call.
-    HWY_INLINE bool draw_part(std::size_t lane, std::size_t part) {
-        constexpr std::int32_t kIn = Tile::kCellSide - 1;
-        const std::int32_t column0 = stored_.column0[lane], row0 = stored_.row0[lane];
-        const VI in_cell = hn::Iota(kI, static_cast<std::int32_t>(part));
-        const VI i = hn::Sub(hn::And(in_cell, set(kIn)), set(column0 & kIn));
-        const VI j = hn::Sub(hn::ShiftRight<Tile::kCellBits>(in_cell), set(row0 & kIn));
-        Walk w;
-        for (int k = 0; k < 3; ++k)
-            w.e[k] = hn::Add(set(stored_.edges[3 * k][lane]),
-                             hn::Add(hn::Mul(i, set(stored_.edges[3 * k + 1][lane])),
-                                     hn::Mul(j, set(stored_.edges[3 * k + 2][lane]))));
-        w.dx = hn::Add(set(stored_.dx0[lane]), hn::ShiftLeftSame(i, grid_.step_bits));
-        w.dy = hn::Add(set(stored_.dy0[lane]), hn::ShiftLeftSame(j, grid_.step_bits));
-        w.gx = hn::Set(kF, stored_.gx[lane]);
-        w.gy = hn::Set(kF, stored_.gy[lane]);
-        w.z0 = hn::Set(kF, stored_.z0[lane]);
-        w.id = hn::Set(kU, static_cast<std::uint32_t>(stored_.number[lane]));
-        w.doubtful = hn::Lt(w.gx, w.gx);
-        const std::size_t at = Tile::index(column0 & ~kIn, row0 & ~kIn) + part;
-        const std::int32_t right = (column0 & kIn) + stored_.columns[lane];
-        const std::int32_t below = (row0 & kIn) + stored_.rows[lane];
-        if (HWY_LIKELY((right | below) < 2 * Tile::kCellSide))
-            draw_cells(lane, at, 1, 1, w);
-        else
-            draw_cells(lane, at, right >> Tile::kCellBits, below >> Tile::kCellBits, w);
-        return !hn::AllFalse(kF, w.doubtful);
-    }
-
-    // The first cell and `right` by `below` further ones.
-    HWY_INLINE void draw_cells(std::size_t lane, std::size_t at, std::int32_t right,
-                               std::int32_t below, Walk& w) {
-        const VI step = set(Tile::kCellSide << grid_.step_bits);
-        for (std::int32_t r = 0;; ++r, at += Tile::kCellRow) {
-            VI e[3] = {w.e[0], w.e[1], w.e[2]};
-            VI dx = w.dx;
-            const VF ty = hn::Mul(w.gy, hn::ConvertTo(kF, w.dy));
-            for (std::int32_t c = 0;; ++c) {
-                const VF tx = hn::Mul(w.gx, hn::ConvertTo(kF, dx));
-                offer(e, stored_depth_of(w.z0, tx, ty),
-                      at + static_cast<std::size_t>(c) * Tile::kCell, w);
-                if (c == right) break;
-                for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], set(stored_.right[k][lane]));
-                dx = hn::Add(dx, step);
-            }
-            if (r == below) break;
-            for (int k = 0; k < 3; ++k) w.e[k] = hn::Add(w.e[k], set(stored_.below[k][lane]));
-            w.dy = hn::Add(w.dy, step);
-        }
-    }
-
-    // Whole vectors are stored, not masked ones: the next triangle most likely wants the same
-    // samples, and a load that a masked or shifted store overlaps has to wait for it.
-    HWY_INLINE void offer(const VI e[3], VF z, std::size_t at, Walk& w) {
-        const VF margin = hn::Set(kF, kUncertain);
-        const auto covered = hn::RebindMask(kF, hn::Gt(hn::Or(e[0], hn::Or(e[1], e[2])), set(-1)));
-        const VF old = hn::Load(kF, tile_.depth + at);
-        const auto nearer = hn::And(covered, hn::Lt(z, hn::Sub(old, margin)));
-        const auto not_farther = hn::And(covered, hn::Le(z, hn::Add(old, margin)));
-        w.doubtful = hn::Or(w.doubtful, hn::AndNot(nearer, not_farther));
-        hn::Store(hn::IfThenElse(nearer, z, old), kF, tile_.depth + at);
-        const auto owner = hn::Load(kU, tile_.ids + at);
-        hn::Store(hn::IfThenElse(hn::RebindMask(kU, nearer), w.id, owner), kU, tile_.ids + at);
-    }
-
-    // Brings block_max and tile_max up to date.
-    void refresh_depth() {
+    // Brings block_max, where something was drawn, and tile_max up to date.
+    HWY_NOINLINE void refresh_depth() {
+        constexpr std::uint32_t kAll = (1u << Tile::kBlocks) - 1;
+        const std::uint32_t columns = all_bits(dirty_columns_) & kAll;
+        for (std::uint32_t rows = all_bits(dirty_rows_) & kAll; rows != 0; rows &= rows - 1)
+            for (std::uint32_t rest = columns; rest != 0; rest &= rest - 1)
+                refresh_block(static_cast<std::uint32_t>(std::countr_zero(rows)),
+                              static_cast<std::uint32_t>(std::countr_zero(rest)));
+        tile_.tile_max = *std::max_element(std::begin(tile_.block_max), std::end(tile_.block_max));
+        dirty_columns_ = dirty_rows_ = set(0);
         tile_.drawn = 0;
         tile_.knows_depth = true;
-        float all = 0;
-        for (std::uint32_t b = 0; b < Tile::kBlocks * Tile::kBlocks; ++b) {
-            const auto column = static_cast<std::int32_t>(b % Tile::kBlocks << Tile::kBlockBits);
-            const auto row = static_cast<std::int32_t>(b / Tile::kBlocks << Tile::kBlockBits);
-            const float* at = tile_.depth + Tile::index(column, row);
-            VF most = hn::Zero(kF);
-            for (std::size_t k = 0; k < 2 * Tile::kCell; k += hn::Lanes(kF))
-                most = hn::Max(
-                    most, hn::Max(hn::Load(kF, at + k), hn::Load(kF, at + Tile::kCellRow + k)));
-            tile_.block_max[b] = hn::GetLane(hn::MaxOfLanes(kF, most));
-            all = std::max(all, tile_.block_max[b]);
-        }
-        tile_.tile_max = all;
+    }
+
+    HWY_INLINE void refresh_block(std::uint32_t block_row, std::uint32_t block_column) {
+        const float* at =
+            tile_.depth + Tile::index(static_cast<std::int32_t>(block_column << Tile::kBlockBits),
+                                      static_cast<std::int32_t>(block_row << Tile::kBlockBits));
+        VF most = hn::Zero(kF);
+        for (std::size_t k = 0; k < 2 * Tile::kCell; k += hn::Lanes(kF))
+            most =
+                hn::Max(most, hn::Max(hn::Load(kF, at + k), hn::Load(kF, at + Tile::kCellRow + k)));
+        tile_.block_max[block_row * Tile::kBlocks + block_column] =
+            hn::GetLane(hn::MaxOfLanes(kF, most));
     }
 
     const RasterInput& input_;
@@ -307,12 +300,13 @@ private:
     Tile& tile_;
     TileCounts& counts_;
     TileWriter& writer_;
-    Stored stored_;
+    VI dirty_columns_ = set(0), dirty_rows_ = set(0);
+    Waiting waiting_;
 };
 
-void draw_batches(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                  TileCounts& counts, TileWriter& writer) {
-    Batch(input, tile, counts, writer).draw(triangles);
+void draw_batches(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
+                  Tile& tile, TileCounts& counts, TileWriter& writer) {
+    Batch(input, tile, counts, writer).draw(bins);
 }
 
 void clear(Tile& tile) {
@@ -343,14 +337,15 @@ HWY_EXPORT(write_drawn);
 
 void clear_tile(Tile& tile) { HWY_DYNAMIC_DISPATCH(clear)(tile); }
 
-void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                    TileCounts& counts, TileWriter& writer) {
+void draw_triangles(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
+                    Tile& tile, TileCounts& counts, TileWriter& writer) {
     if (input.observer == nullptr) {
-        HWY_DYNAMIC_DISPATCH(draw_batches)(input, triangles, tile, counts, writer);
+        HWY_DYNAMIC_DISPATCH(draw_batches)(input, bins, tile, counts, writer);
         return;
     }
     // A watcher wants to see the steps one by one.
-    for (const std::uint32_t k : triangles) draw_large(input, k, tile, counts);
+    for (const std::span<const TriangleItem> bin : bins)
+        for (const TriangleItem& item : bin) draw_large(input, item.number(), tile, counts);
 }
 
 void write_rest(TileWriter& writer) { HWY_DYNAMIC_DISPATCH(write_all)(writer); }

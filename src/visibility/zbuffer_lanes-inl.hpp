@@ -50,134 +50,129 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
     return bytes[0] | std::uint32_t{bytes[1]} << 8;
 }
 
-struct CornerLanes {
-    VI x[3], y[3], z[3];
-};
-
-// An edge function at the first sample of a box, less one where the edge does not own its points,
-// divided by the step; and its increments.
-struct Edges {
-    VI at[3], per_column[3], per_row[3];
-};
-
-// Triangles in a tile, in lanes.
-struct Lanes {
-    VI number;
-    VI column0, row0, columns, rows;  // box: first sample, and how many further ones
-    Edges edges;
-    VF gx, gy, z0;
-    VI dx0, dy0;  // from the plane's anchor to the first sample
-};
-
-// Triangles by number, with the indices of their corners.
-struct Fetched {
-    M wanted, whole;  // whole: no piece of a clipped triangle (those have their corners elsewhere)
-    VI number, corner[3];
-};
-
-HWY_INLINE Fetched fetch(const ScreenScene& screen, VI number, std::size_t n) {
-    const auto* corners = reinterpret_cast<const std::int32_t*>(screen.scene().triangles.data());
-    Fetched f;
-    f.number = number;
-    f.wanted = hn::FirstN(kI, n);
-    f.whole = hn::And(
-        f.wanted, hn::Lt(number, set(static_cast<std::int32_t>(screen.scene().triangle_count()))));
-    const VI safe = hn::IfThenElseZero(f.whole, number);
-    const VI first = hn::Add(safe, hn::Add(safe, safe));
-    for (int k = 0; k < 3; ++k) f.corner[k] = hn::GatherIndex(kI, corners + k, first);
-    return f;
-}
-
-HWY_INLINE CornerLanes gather_points(const ScreenScene& screen, const Fetched& f) {
-    static_assert(sizeof(ScreenPoint) == 4 * sizeof(std::int32_t));
-    const auto* points = reinterpret_cast<const std::int32_t*>(screen.points().data());
-    CornerLanes p;
-    for (int k = 0; k < 3; ++k) {
-        const VI at = hn::ShiftLeft<2>(f.corner[k]);
-        p.x[k] = hn::GatherIndex(kI, points, at);
-        p.y[k] = hn::GatherIndex(kI, points + 1, at);
-        p.z[k] = hn::GatherIndex(kI, points + 2, at);
-    }
-    return p;
-}
-
-// Vectors of triangles on their way: while one is worked on, the corners of the next and the
-// indices of the one after it are fetched, for they are scattered over memory.
-// fetch_from(i) gives the triangles from i on.
-template <class FetchFrom, class Work>
-HWY_INLINE void for_each_vector(const ScreenScene& screen, std::size_t count,
-                                const FetchFrom& fetch_from, const Work& work) {
-    if (count == 0) return;
-    const std::size_t lanes = hn::Lanes(kI);
-    Fetched next = fetch_from(std::size_t{0});
-    CornerLanes points = gather_points(screen, next);
-    Fetched after = count > lanes ? fetch_from(lanes) : next;
-    for (std::size_t i = 0; i < count; i += lanes) {
-        const Fetched now = next;
-        const CornerLanes corners = points;
-        next = after;
-        if (i + lanes < count) points = gather_points(screen, next);
-        if (i + 2 * lanes < count) after = fetch_from(i + 2 * lanes);
-        work(now, corners);
-    }
-}
-
 HWY_INLINE VI least(const VI v[3]) { return hn::Min(v[0], hn::Min(v[1], v[2])); }
 HWY_INLINE VI greatest(const VI v[3]) { return hn::Max(v[0], hn::Max(v[1], v[2])); }
 
-// The box in a part of the picture; returns the lanes where it holds a sample, and which of all are
-// small.
-HWY_INLINE M set_boxes(const CornerLanes& p, const GridUnits& grid, const Area& area, Lanes& t,
-                       M& small) {
-    const VI x_min = least(p.x), x_max = greatest(p.x), y_min = least(p.y), y_max = greatest(p.y);
-    small = hn::And(hn::Lt(hn::Sub(x_max, x_min), set(kSmallExtent)),
-                    hn::Lt(hn::Sub(y_max, y_min), set(kSmallExtent)));
+/// Triangles in lanes: number, sheet (-1: none), indices of the corners and where these are.
+struct Triangles {
+    VI number, sheet, corner[3];
+    VI x[3], y[3], z[3];
+};
+
+// A coordinate of the points at these indices.
+HWY_INLINE VI gather_axis(const ScreenScene& screen, int axis, VI index) {
+    static_assert(sizeof(ScreenPoint) == 4 * sizeof(std::int32_t));
+    const auto* points = reinterpret_cast<const std::int32_t*>(screen.points().data());
+    return hn::GatherIndex(kI, points + axis, hn::ShiftLeft<2>(index));
+}
+
+#if HWY_TARGET != HWY_SCALAR
+// Points at(j), at(j + 4), ..., one in each block of 128 bits.
+template <std::size_t kBlocks, class At>
+HWY_INLINE auto load_blocks(const At& at, std::size_t j) {
+    const hn::CappedTag<std::int32_t, 4 * kBlocks> d;
+    if constexpr (kBlocks == 1)
+        return hn::Load(d, at(j));
+    else
+        return hn::Combine(d, load_blocks<kBlocks / 2>(at, j + 2 * kBlocks),
+                           load_blocks<kBlocks / 2>(at, j));
+}
+#endif
+
+// Where one corner of as many triangles as a vector has lanes is. The indices are found in memory,
+// `stride` apart. Points are loaded whole and transposed, which takes half as long as gathering
+// their coordinates.
+HWY_INLINE void load_points(const ScreenScene& screen, const std::uint32_t* index,
+                            std::size_t stride, VI& x, VI& y, VI& z) {
+    const ScreenPoint* points = screen.points().data();
+    const auto at = [=](std::size_t i) HWY_ATTR {
+        return reinterpret_cast<const std::int32_t*>(points + index[i * stride]);
+    };
+#if HWY_TARGET == HWY_SCALAR
+    x = set(at(0)[0]);
+    y = set(at(0)[1]);
+    z = set(at(0)[2]);
+#else
+    constexpr std::size_t kBlocks = kLanes / 4;
+    const hn::Repartition<std::uint64_t, Ints> d64;
+    const auto pairs = [&](VI v) HWY_ATTR { return hn::BitCast(d64, v); };
+    const VI a = load_blocks<kBlocks>(at, 0), b = load_blocks<kBlocks>(at, 1);
+    const VI c = load_blocks<kBlocks>(at, 2), d = load_blocks<kBlocks>(at, 3);
+    const auto xy0 = pairs(hn::InterleaveLower(kI, a, b));
+    const auto xy1 = pairs(hn::InterleaveLower(kI, c, d));
+    x = hn::BitCast(kI, hn::InterleaveLower(d64, xy0, xy1));
+    y = hn::BitCast(kI, hn::InterleaveUpper(d64, xy0, xy1));
+    z = hn::BitCast(kI, hn::InterleaveLower(d64, pairs(hn::InterleaveUpper(kI, a, b)),
+                                            pairs(hn::InterleaveUpper(kI, c, d))));
+#endif
+}
+
+// Boxes of samples: the first one, and how many further ones.
+struct Boxes {
+    VI column0, row0, columns, rows;
+};
+
+// The samples of an area that the triangles' boxes hold, from the area's first one; `held` gets the
+// lanes where there are any.
+HWY_INLINE Boxes boxes_in(const Triangles& t, const GridUnits& grid, const Area& area, M& held) {
     const VI up = set((1 << grid.step_bits) - 1 - grid.offset), down = set(-grid.offset);
     const auto sample = [&](VI v, VI shift, std::int32_t first) {
         return hn::Sub(hn::ShiftRightSame(hn::Add(v, shift), grid.step_bits), set(first));
     };
-    t.column0 = hn::Max(sample(x_min, up, area.column), set(0));
-    t.row0 = hn::Max(sample(y_min, up, area.row), set(0));
-    t.columns = hn::Sub(hn::Min(sample(x_max, down, area.column), set(area.width - 1)), t.column0);
-    t.rows = hn::Sub(hn::Min(sample(y_max, down, area.row), set(area.height - 1)), t.row0);
-    return hn::And(hn::Gt(t.columns, set(-1)), hn::Gt(t.rows, set(-1)));
+    Boxes b;
+    b.column0 = hn::Max(sample(least(t.x), up, area.column), set(0));
+    b.row0 = hn::Max(sample(least(t.y), up, area.row), set(0));
+    b.columns =
+        hn::Sub(hn::Min(sample(greatest(t.x), down, area.column), set(area.width - 1)), b.column0);
+    b.rows = hn::Sub(hn::Min(sample(greatest(t.y), down, area.row), set(area.height - 1)), b.row0);
+    held = hn::Gt(hn::Min(b.columns, b.rows), set(-1));
+    return b;
 }
 
-HWY_INLINE VI doubled_area(const CornerLanes& p) {
-    return hn::Sub(hn::Mul(hn::Sub(p.x[1], p.x[0]), hn::Sub(p.y[2], p.y[0])),
-                   hn::Mul(hn::Sub(p.y[1], p.y[0]), hn::Sub(p.x[2], p.x[0])));
+// Lanes whose corners are less than `extent` apart.
+HWY_INLINE M within(const Triangles& t, std::int32_t extent) {
+    const VI width = hn::Sub(greatest(t.x), least(t.x)),
+             height = hn::Sub(greatest(t.y), least(t.y));
+    return hn::Lt(hn::Max(width, height), set(extent));
 }
 
-// Exchanges the second and third corner where the triangle runs the other way round.
-HWY_INLINE void orient(CornerLanes& p, M reversed) {
-    for (VI* v : {p.x, p.y, p.z}) {
-        const VI second = hn::IfThenElse(reversed, v[2], v[1]);
-        v[2] = hn::IfThenElse(reversed, v[1], v[2]);
-        v[1] = second;
-    }
+HWY_INLINE VI doubled_area(const Triangles& t) {
+    return hn::Sub(hn::Mul(hn::Sub(t.x[1], t.x[0]), hn::Sub(t.y[2], t.y[0])),
+                   hn::Mul(hn::Sub(t.y[1], t.y[0]), hn::Sub(t.x[2], t.x[0])));
 }
 
-// Sets up the edges at sample positions (sx, sy); returns the lanes that no edge excludes.
-HWY_INLINE M set_edges(const CornerLanes& p, VI sx, VI sy, int step_bits, Lanes& t) {
+// Edge functions at a sample, less one where the edge does not own its points, divided by the step;
+// and their increments. A sample is covered where none is negative.
+struct Edges {
+    VI at[3], per_column[3], per_row[3];
+};
+
+HWY_INLINE Edges edges_at(const Triangles& t, VI doubled, VI sx, VI sy, int step_bits) {
     const VI zero = set(0);
-    M kept = hn::Eq(zero, zero);
+    // The other way round where the corners go round the other way.
+    const M reversed = hn::Lt(doubled, zero);
+    const auto second = [&](const VI v[3]) { return hn::IfThenElse(reversed, v[2], v[1]); };
+    const auto third = [&](const VI v[3]) { return hn::IfThenElse(reversed, v[1], v[2]); };
+    const VI x[3] = {t.x[0], second(t.x), third(t.x)}, y[3] = {t.y[0], second(t.y), third(t.y)};
+    Edges edges;
     for (int k = 0; k < 3; ++k) {
         const int next = (k + 1) % 3;
-        const VI dx = hn::Sub(p.x[next], p.x[k]), dy = hn::Sub(p.y[next], p.y[k]);
-        const VI value =
-            hn::Sub(hn::Mul(dx, hn::Sub(sy, p.y[k])), hn::Mul(dy, hn::Sub(sx, p.x[k])));
+        const VI dx = hn::Sub(x[next], x[k]), dy = hn::Sub(y[next], y[k]);
+        const VI value = hn::Sub(hn::Mul(dx, hn::Sub(sy, y[k])), hn::Mul(dy, hn::Sub(sx, x[k])));
         const M top_left = hn::Or(hn::Lt(dy, zero), hn::And(hn::Eq(dy, zero), hn::Gt(dx, zero)));
         const VI biased = hn::Sub(value, hn::IfThenElse(top_left, zero, set(1)));
-        t.edges.at[k] = hn::ShiftRightSame(biased, step_bits);
-        t.edges.per_column[k] = hn::Sub(zero, dy);
-        t.edges.per_row[k] = dx;
-        const VI most =
-            hn::Add(t.edges.at[k], hn::Add(hn::Max(zero, hn::Mul(t.edges.per_column[k], t.columns)),
-                                           hn::Max(zero, hn::Mul(dx, t.rows))));
-        kept = hn::And(kept, hn::Gt(most, set(-1)));
+        edges.at[k] = hn::ShiftRightSame(biased, step_bits);
+        edges.per_column[k] = hn::Sub(zero, dy);
+        edges.per_row[k] = dx;
     }
-    return kept;
+    return edges;
 }
+
+// Planes of depth: gradients, depth at the anchor, and where a first sample is from there.
+struct Planes {
+    VF gx, gy, z0;
+    VI dx, dy;
+};
 
 // Gradients of the planes with these edges u, v from the first corner, for as many lanes as a
 // vector has doubles.
@@ -195,19 +190,22 @@ HWY_INLINE void own_gradient(const VInts u[3], const VInts v[3], VD& gx, VD& gy)
     gy = hn::Div(nb, nc);
 }
 
-HWY_INLINE void set_own_planes(const CornerLanes& p, Lanes& t) {
-    const VI* axes[3] = {p.x, p.y, p.z};
+HWY_INLINE Planes own_planes(const Triangles& t, VI sx, VI sy) {
+    Planes plane;
+    plane.z0 = hn::ConvertTo(kF, t.z[0]);
+    plane.dx = hn::Sub(sx, t.x[0]);
+    plane.dy = hn::Sub(sy, t.y[0]);
+    const VI* axes[3] = {t.x, t.y, t.z};
     VI u[3], v[3];
     for (int k = 0; k < 3; ++k) {
         u[k] = hn::Sub(axes[k][1], axes[k][0]);
         v[k] = hn::Sub(axes[k][2], axes[k][0]);
     }
-    t.z0 = hn::ConvertTo(kF, p.z[0]);
 #if HWY_TARGET == HWY_SCALAR
     VD gx, gy;
     own_gradient(u, v, gx, gy);
-    t.gx = hn::DemoteTo(kF, gx);
-    t.gy = hn::DemoteTo(kF, gy);
+    plane.gx = hn::DemoteTo(kF, gx);
+    plane.gy = hn::DemoteTo(kF, gy);
 #else
     // A vector holds half as many doubles.
     using HalfInts = hn::Half<Ints>;
@@ -222,98 +220,76 @@ HWY_INLINE void set_own_planes(const CornerLanes& p, Lanes& t) {
     VD gx_lo, gy_lo, gx_hi, gy_hi;
     own_gradient(u_lo, v_lo, gx_lo, gy_lo);
     own_gradient(u_hi, v_hi, gx_hi, gy_hi);
-    t.gx = hn::Combine(kF, hn::DemoteTo(kHalf, gx_hi), hn::DemoteTo(kHalf, gx_lo));
-    t.gy = hn::Combine(kF, hn::DemoteTo(kHalf, gy_hi), hn::DemoteTo(kHalf, gy_lo));
+    plane.gx = hn::Combine(kF, hn::DemoteTo(kHalf, gx_hi), hn::DemoteTo(kHalf, gx_lo));
+    plane.gy = hn::Combine(kF, hn::DemoteTo(kHalf, gy_hi), hn::DemoteTo(kHalf, gy_lo));
 #endif
+    return plane;
 }
 
-HWY_INLINE VI sheets_of(const RasterInput& input, VI number) {
+// Marks the numbers of those that belong to a sheet.
+HWY_INLINE VI marked(const Triangles& t) {
+    static_assert(kInSheet == 1u << 31);
+    return hn::Or(t.number, hn::ShiftLeft<31>(hn::Not(hn::ShiftRight<31>(t.sheet))));
+}
+
+// The sheets of triangles, by marked numbers: -1 for none.
+HWY_INLINE VI sheets_of(const ScreenScene& screen, VI marks) {
+    const M in_sheet = hn::Lt(marks, set(0));
+    if (hn::AllFalse(kI, in_sheet)) return set(-1);
     const auto* of_triangle =
-        reinterpret_cast<const std::int32_t*>(input.screen.scene().sheets.of_triangle.data());
-    return hn::GatherIndex(kI, of_triangle, number);
+        reinterpret_cast<const std::int32_t*>(screen.scene().sheets.of_triangle.data());
+    const VI number = hn::And(marks, set(INT32_MAX));
+    return hn::IfThenElse(
+        in_sheet, hn::GatherIndex(kI, of_triangle, hn::IfThenElseZero(in_sheet, number)), set(-1));
 }
 
-// Triangles that belong to a sheet.
-HWY_INLINE M sheet_lanes(const RasterInput& input, VI number) {
-    if (input.shared.empty()) return hn::Ne(number, number);
-    return hn::Ne(sheets_of(input, number), set(-1));
-}
-
-// Puts the shared plane in place of the own one where a triangle belongs to a sheet.
-HWY_INLINE void set_shared_planes(const RasterInput& input, VI sx, VI sy, Lanes& t) {
-    if (input.shared.empty()) return;
+// The planes that triangles share with their sheets; returns the lanes where there is one in force.
+HWY_INLINE M shared_planes(const RasterInput& input, VI sheet, VI sx, VI sy, Planes& plane) {
+    const M in_sheet = hn::Gt(sheet, set(-1));
+    if (hn::AllFalse(kI, in_sheet)) return in_sheet;
     static_assert(sizeof(SharedGradient) == 5 * sizeof(float));
-    const VI sheet = sheets_of(input, t.number);
-    const M in_sheet = hn::Ne(sheet, set(-1));
-    if (hn::AllFalse(kI, in_sheet)) return;
     const VI slot = hn::Mul(hn::IfThenElseZero(in_sheet, sheet), set(5));
     const auto* floats = reinterpret_cast<const float*>(input.shared.data());
     const auto* ints = reinterpret_cast<const std::int32_t*>(input.shared.data());
-    const VF gx = hn::GatherIndex(kF, floats, slot);
-    const auto shared = hn::And(hn::RebindMask(kF, in_sheet), hn::Eq(gx, gx));  // not NaN
-    t.gx = hn::IfThenElse(shared, gx, t.gx);
-    t.gy = hn::IfThenElse(shared, hn::GatherIndex(kF, floats + 1, slot), t.gy);
-    t.z0 = hn::IfThenElse(shared, hn::GatherIndex(kF, floats + 2, slot), t.z0);
-    const M shared_ints = hn::RebindMask(kI, shared);
-    t.dx0 = hn::IfThenElse(shared_ints, hn::Sub(sx, hn::GatherIndex(kI, ints + 3, slot)), t.dx0);
-    t.dy0 = hn::IfThenElse(shared_ints, hn::Sub(sy, hn::GatherIndex(kI, ints + 4, slot)), t.dy0);
+    plane.gx = hn::GatherIndex(kF, floats, slot);
+    plane.gy = hn::GatherIndex(kF, floats + 1, slot);
+    plane.z0 = hn::GatherIndex(kF, floats + 2, slot);
+    plane.dx = hn::Sub(sx, hn::GatherIndex(kI, ints + 3, slot));
+    plane.dy = hn::Sub(sy, hn::GatherIndex(kI, ints + 4, slot));
+    return hn::And(in_sheet, hn::RebindMask(kI, hn::Eq(plane.gx, plane.gx)));  // not NaN
 }
 
-// Depth over the box. How far it rises from the anchor decides whether floats will do; its least
-// value is that of a corner, because every operation is monotone.
+HWY_INLINE Planes choose(M mask, const Planes& yes, const Planes& no) {
+    const auto floats = hn::RebindMask(kF, mask);
+    return {hn::IfThenElse(floats, yes.gx, no.gx), hn::IfThenElse(floats, yes.gy, no.gy),
+            hn::IfThenElse(floats, yes.z0, no.z0), hn::IfThenElse(mask, yes.dx, no.dx),
+            hn::IfThenElse(mask, yes.dy, no.dy)};
+}
+
+// Depth over boxes of so many further columns and rows. How far it rises from the anchor decides
+// whether floats will do; its least value is that of a corner, because every operation is monotone.
 struct DepthRange {
     M regular;
     VF least;
 };
 
-HWY_INLINE DepthRange depth_over_box(const Lanes& t, int step_bits) {
-    const VI dx1 = hn::Add(t.dx0, hn::Mul(t.columns, set(1 << step_bits)));
-    const VI dy1 = hn::Add(t.dy0, hn::Mul(t.rows, set(1 << step_bits)));
-    const VF tx0 = hn::Mul(t.gx, hn::ConvertTo(kF, t.dx0));
-    const VF tx1 = hn::Mul(t.gx, hn::ConvertTo(kF, dx1));
-    const VF ty0 = hn::Mul(t.gy, hn::ConvertTo(kF, t.dy0));
-    const VF ty1 = hn::Mul(t.gy, hn::ConvertTo(kF, dy1));
+HWY_INLINE DepthRange depth_over(const Planes& plane, VI columns, VI rows, int step_bits) {
+    const VI dx1 = hn::Add(plane.dx, hn::ShiftLeftSame(columns, step_bits));
+    const VI dy1 = hn::Add(plane.dy, hn::ShiftLeftSame(rows, step_bits));
+    const VF tx0 = hn::Mul(plane.gx, hn::ConvertTo(kF, plane.dx));
+    const VF tx1 = hn::Mul(plane.gx, hn::ConvertTo(kF, dx1));
+    const VF ty0 = hn::Mul(plane.gy, hn::ConvertTo(kF, plane.dy));
+    const VF ty1 = hn::Mul(plane.gy, hn::ConvertTo(kF, dy1));
     const VF rise =
         hn::Add(hn::Max(hn::Abs(tx0), hn::Abs(tx1)), hn::Max(hn::Abs(ty0), hn::Abs(ty1)));
     return {hn::RebindMask(kI, hn::Le(rise, hn::Set(kF, kRegularRise))),
-            hn::Add(t.z0, hn::Add(hn::Min(tx0, tx1), hn::Min(ty0, ty1)))};
+            hn::Add(plane.z0, hn::Add(hn::Min(tx0, tx1), hn::Min(ty0, ty1)))};
 }
 
 // Stored depth from the two terms of a sample.
 HWY_INLINE VF stored_depth_of(VF z0, VF tx, VF ty) {
     return hn::Min(hn::Max(hn::Add(z0, hn::Add(tx, ty)), hn::Zero(kF)),
                    hn::Set(kF, kStoredDepthMax));
-}
-
-// All of the set-up but the judgement of depth: boxes in `area`, edges and planes of the small
-// triangles. Returns the lanes that may cover a sample; `large` gets those that are not small.
-// look(p, t, kept) is asked, as soon as the boxes are known, which of the lanes are still wanted.
-template <class Look>
-HWY_INLINE M set_up_lanes(const RasterInput& input, const Area& area, const Fetched& fetched,
-                          CornerLanes p, const Look& look, Lanes& t, M& large) {
-    const GridUnits& grid = input.grid;
-    t.number = hn::IfThenElseZero(fetched.whole, fetched.number);
-    t.gx = t.gy = t.z0 = hn::Zero(kF);
-    t.dx0 = t.dy0 = set(0);
-    M small;
-    const M in_area = hn::And(fetched.whole, set_boxes(p, grid, area, t, small));
-    large = hn::AndNot(small, in_area);
-    const VI doubled = doubled_area(p);
-    M kept = hn::And(hn::And(in_area, small), hn::Ne(doubled, set(0)));
-    if (hn::AllFalse(kI, kept)) return kept;
-    kept = look(p, t, kept);
-    if (hn::AllFalse(kI, kept)) return kept;
-    orient(p, hn::Lt(doubled, set(0)));
-    const VI step = set(1 << grid.step_bits);
-    const VI sx = hn::Add(hn::Mul(t.column0, step), set(grid.position(area.column)));
-    const VI sy = hn::Add(hn::Mul(t.row0, step), set(grid.position(area.row)));
-    kept = hn::And(kept, set_edges(p, sx, sy, grid.step_bits, t));
-    if (hn::AllFalse(kI, kept)) return kept;
-    t.dx0 = hn::Sub(sx, p.x[0]);
-    t.dy0 = hn::Sub(sy, p.y[0]);
-    set_own_planes(p, t);
-    set_shared_planes(input, sx, sy, t);
-    return kept;
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // The SIMD stages of the z-buffer, and what they share with its driver.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -36,30 +38,83 @@ private:
 /// A triangle is tiny when its box has at most this many samples a side.
 inline constexpr std::int32_t kTinySide = 3;
 
-/// Triangles that may cover samples.
+/// Marks the numbers of triangles that belong to a sheet, for few do, and others need not be asked.
+inline constexpr std::uint32_t kInSheet = 1u << 31;
+
+/// A triangle in a bin. With its corners, for whoever takes it out would have to look for them.
+struct TriangleItem {
+    Corners corners;
+    std::uint32_t marked;  ///< its number, and perhaps kInSheet
+
+    [[nodiscard]] std::uint32_t number() const { return marked & ~kInSheet; }
+};
+static_assert(sizeof(TriangleItem) == 4 * sizeof(std::uint32_t));
+
+/// Triangles that may cover samples and are not tiny, once for each tile that their boxes meet.
 struct Selected {
-    /// The tiny ones: their numbers.
-    std::vector<std::uint32_t> tiny;
-    std::size_t tiny_count = 0;
-    /// The others: number, first tile (row-major, and for those that show their back as many tiles
-    /// more as there are), further tiles (columns + (rows << 16)).
-    std::vector<std::uint32_t> triangle, tile, more;
+    std::vector<std::uint32_t> marked;  ///< number, and perhaps kInSheet
+    /// Row-major; for triangles that show their back, as many more as there are tiles.
+    std::vector<std::uint32_t> tile;
     std::size_t count = 0;
+
+    void append(std::uint32_t m, std::uint32_t t) {
+        make_room(1);
+        marked[count] = m;
+        tile[count++] = t;
+    }
+    void make_room(std::size_t further) {
+        if (count + further <= marked.size()) return;
+        const std::size_t room = std::max<std::size_t>(2 * marked.size(), count + further);
+        marked.resize(room);
+        tile.resize(room);
+    }
 };
 
-/// A sample that a triangle covers, with its stored depth there.
-struct Point {
-    std::uint32_t place;  ///< tile << 12 | sample in the tile, cell by cell (Tile)
-    float z;
-    std::uint32_t id;
+/// Samples of one tile that tiny triangles cover: where (Tile::index()), their stored depths there,
+/// and whose they are.
+struct alignas(64) PointBlock {
+    static constexpr std::size_t kRoom = 128;
+    std::uint32_t place[kRoom];
+    float z[kRoom];
+    std::uint32_t id[kRoom];
+    std::size_t count;
+    PointBlock* before;
 };
-static_assert(2 * kTileBits == 12);
 
-/// The samples of tiny triangles, before they are sorted by tile.
-struct Points {
-    std::vector<std::uint32_t> place, id;
-    std::vector<float> z;
-    std::size_t count = 0;
+/// Points by tile, in chains of blocks. What one worker makes of tiny triangles; the blocks are
+/// kept from frame to frame, for fresh memory is slow.
+class PointBins {
+public:
+    /// Forgets all points.
+    void start(std::size_t tiles) {
+        last_.assign(tiles, nullptr);
+        used_ = 0;
+    }
+    /// A block of the tile that has room for a vector of points.
+    [[nodiscard]] PointBlock& block_of(std::size_t tile) {
+        PointBlock* block = last_[tile];
+        if (block != nullptr && block->count + kVector <= PointBlock::kRoom) return *block;
+        return grow(tile);
+    }
+    [[nodiscard]] bool any_in(std::size_t tile) const { return last_[tile] != nullptr; }
+    /// visit(block) for all blocks of a tile.
+    template <class Visit>
+    void for_each_block(std::size_t tile, const Visit& visit) const {
+        for (const PointBlock* b = last_[tile]; b != nullptr; b = b->before) {
+            if (b->before != nullptr) prefetch(*b->before);
+            visit(*b);
+        }
+    }
+
+private:
+    static constexpr std::size_t kVector = 16, kSlab = 64;
+
+    PointBlock& grow(std::size_t tile);
+    static void prefetch(const PointBlock& block);
+
+    std::vector<PointBlock*> last_;  // by tile
+    std::vector<std::unique_ptr<PointBlock[]>> slabs_;
+    std::size_t used_ = 0;  // blocks
 };
 
 /// Screen triangles with consecutive numbers.
@@ -105,21 +160,12 @@ struct Tile {
         return (r >> kCellBits) * kCellRow + (c >> kCellBits) * kCell + (r & kIn) * kCellSide +
                (c & kIn);
     }
-    /// Of a point.
-    [[nodiscard]] static std::size_t index(const Point& point) {
-        const std::uint32_t sample = point.place & (kTileSize * kTileSize - 1);
-        constexpr std::uint32_t kRowBits =
-            kTileBits + kCellBits;  // of the samples in a row of cells
-        return sample + (sample >> kRowBits) * (kCellRow - (std::size_t{1} << kRowBits));
+    /// The column and the row of an index.
+    [[nodiscard]] static std::int32_t column_of(std::size_t index) {
+        return static_cast<std::int32_t>(index % kCellRow / kCell * kCellSide + index % kCellSide);
     }
-    [[nodiscard]] static std::int32_t column_of(const Point& point) {
-        const std::uint32_t cell = point.place >> (2 * kCellBits) & kLastCell;
-        return static_cast<std::int32_t>(cell << kCellBits | (point.place & (kCellSide - 1)));
-    }
-    [[nodiscard]] static std::int32_t row_of(const Point& point) {
-        const std::uint32_t cell = point.place >> (kTileBits + kCellBits) & kLastCell;
-        return static_cast<std::int32_t>(cell << kCellBits |
-                                         (point.place >> kCellBits & (kCellSide - 1)));
+    [[nodiscard]] static std::int32_t row_of(std::size_t index) {
+        return static_cast<std::int32_t>(index / kCellRow * kCellSide + index % kCell / kCellSide);
     }
 };
 
@@ -198,26 +244,22 @@ static_assert(kUncertain - 64 > 2 * kStoredDepthError);
 [[nodiscard]] bool comes_before(const RasterInput& input, std::uint32_t id, std::uint32_t owner,
                                 std::int32_t x, std::int32_t y, TileCounts& counts);
 
-/// Geometry stage: drops what is skipped or whose box holds no sample (and boxes of one sample that
-/// the triangle does not cover), many triangles at a time.
-void select_triangles(const ScreenScene& screen, const GridUnits& grid, const TriangleRange& range,
-                      Selected& out);
-
-/// Geometry stage: draws the tiny triangles of a selection to points. What can't be (steep ones) is
-/// appended to the others of the selection.
-void draw_tiny(const RasterInput& input, Selected& selected, Points& out);
+/// Geometry stage: drops what is skipped or whose box holds no sample, draws the tiny triangles to
+/// points and selects the others, many triangles at a time.
+void take_triangles(const RasterInput& input, const TriangleRange& range, Selected& selected,
+                    PointBins& points);
 
 /// Clears a tile.
 void clear_tile(Tile& tile);
 
 /// Offers points to a tile.
-void draw_points(const RasterInput& input, std::span<const Point> points, Tile& tile,
+void draw_points(const RasterInput& input, const PointBlock& points, Tile& tile,
                  TileCounts& counts);
 
-/// Draws triangles, by number, into a tile: many small ones at a time, the rest one by one. Rows of
-/// other tiles are written meanwhile.
-void draw_triangles(const RasterInput& input, std::span<const std::uint32_t> triangles, Tile& tile,
-                    TileCounts& counts, TileWriter& writer);
+/// Draws triangles into a tile: many small ones at a time, the rest one by one. Rows of other tiles
+/// are written meanwhile.
+void draw_triangles(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
+                    Tile& tile, TileCounts& counts, TileWriter& writer);
 
 /// Draws one triangle of any size and steepness; tells the observer of each step.
 void draw_large(const RasterInput& input, std::uint32_t triangle, Tile& tile, TileCounts& counts);
