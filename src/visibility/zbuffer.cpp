@@ -205,14 +205,18 @@ private:
             (*space_).workers[w].points.for_each_block(index, [&](const PointBlock& points) {
                 draw_points(raster, points, tile, counts);
             });
-        worker.bins.clear();
-        for (const std::size_t part : {std::size_t{index}, index + grid_.tile_count()})
-            for (const std::uint32_t c : front_to_back_) {
-                const std::span<const TriangleItem> bin = (*space_).chunks[c].of(part);
-                if (!bin.empty()) worker.bins.push_back(bin);
-            }
+        collect_bins(index, worker.bins.front);
+        collect_bins(index + grid_.tile_count(), worker.bins.back);
         draw_triangles(raster, worker.bins, tile, counts, writer);
         counts_[index] = counts;
+    }
+
+    void collect_bins(std::size_t part, std::vector<std::span<const TriangleItem>>& bins) const {
+        bins.clear();
+        for (const std::uint32_t c : front_to_back_) {
+            const std::span<const TriangleItem> bin = (*space_).chunks[c].of(part);
+            if (!bin.empty()) bins.push_back(bin);
+        }
     }
 
     void report() {

@@ -94,11 +94,22 @@ public:
     Batch(const RasterInput& input, Tile& tile, TileCounts& counts, TileWriter& writer)
         : input_(input), grid_(input.grid), tile_(tile), counts_(counts), writer_(writer) {}
 
-    // While a vector is worked on, the corners of the next are fetched, for they are scattered over
-    // memory.
-    void draw(std::span<const std::span<const TriangleItem>> bins) {
+    // What is known of the depth is brought up to date before the back sides, for closed surfaces
+    // hide theirs.
+    void draw(const TileBins& bins) {
         dirty_columns_ = dirty_rows_ = set(-1);
         if (tile_.drawn >= kRefreshAfter) refresh_depth();
+        draw_bins(bins.front);
+        if (bins.back.empty()) return;
+        if (tile_.drawn > 0) refresh_depth();
+        draw_bins(bins.back);
+    }
+
+private:
+
+    // While a vector is worked on, the corners of the next are fetched, for they are scattered over
+    // memory.
+    void draw_bins(std::span<const std::span<const TriangleItem>> bins) {
         ItemReader reader(bins);
         Triangles next;
         M next_wanted;
@@ -114,7 +125,6 @@ public:
         draw_waiting();
     }
 
-private:
     HWY_INLINE void draw_vector(const Triangles& t, M wanted) {
         const int step_bits = grid_.step_bits;
         const auto whole_count = static_cast<std::int32_t>(input_.screen.scene().triangle_count());
@@ -304,8 +314,8 @@ private:
     Waiting waiting_;
 };
 
-void draw_batches(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
-                  Tile& tile, TileCounts& counts, TileWriter& writer) {
+void draw_batches(const RasterInput& input, const TileBins& bins, Tile& tile, TileCounts& counts,
+                  TileWriter& writer) {
     Batch(input, tile, counts, writer).draw(bins);
 }
 
@@ -337,15 +347,16 @@ HWY_EXPORT(write_drawn);
 
 void clear_tile(Tile& tile) { HWY_DYNAMIC_DISPATCH(clear)(tile); }
 
-void draw_triangles(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
-                    Tile& tile, TileCounts& counts, TileWriter& writer) {
+void draw_triangles(const RasterInput& input, const TileBins& bins, Tile& tile, TileCounts& counts,
+                    TileWriter& writer) {
     if (input.observer == nullptr) {
         HWY_DYNAMIC_DISPATCH(draw_batches)(input, bins, tile, counts, writer);
         return;
     }
     // A watcher wants to see the steps one by one.
-    for (const std::span<const TriangleItem> bin : bins)
-        for (const TriangleItem& item : bin) draw_large(input, item.number(), tile, counts);
+    for (const auto* side : {&bins.front, &bins.back})
+        for (const std::span<const TriangleItem> bin : *side)
+            for (const TriangleItem& item : bin) draw_large(input, item.number(), tile, counts);
 }
 
 void write_rest(TileWriter& writer) { HWY_DYNAMIC_DISPATCH(write_all)(writer); }

@@ -256,10 +256,15 @@ void clear_tile(Tile& tile);
 void draw_points(const RasterInput& input, const PointBlock& points, Tile& tile,
                  TileCounts& counts);
 
+/// Triangles of a tile, from several chunks.
+struct TileBins {
+    std::vector<std::span<const TriangleItem>> front, back;  ///< by the side that they show
+};
+
 /// Draws triangles into a tile: many small ones at a time, the rest one by one. Rows of other tiles
 /// are written meanwhile.
-void draw_triangles(const RasterInput& input, std::span<const std::span<const TriangleItem>> bins,
-                    Tile& tile, TileCounts& counts, TileWriter& writer);
+void draw_triangles(const RasterInput& input, const TileBins& bins, Tile& tile, TileCounts& counts,
+                    TileWriter& writer);
 
 /// Draws one triangle of any size and steepness; tells the observer of each step.
 void draw_large(const RasterInput& input, std::uint32_t triangle, Tile& tile, TileCounts& counts);

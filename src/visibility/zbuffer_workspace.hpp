@@ -49,7 +49,7 @@ struct Worker {
     Selected selected;
     PointBins points;
     std::vector<std::uint8_t> hit;  ///< by tile: whether something of this worker's fell into it
-    std::vector<std::span<const TriangleItem>> bins;
+    TileBins bins;
     std::unique_ptr<Tile[]> tiles = std::make_unique_for_overwrite<Tile[]>(2);
 };
 
