@@ -71,7 +71,7 @@ private:
     // Few enough to keep the bins' tables small, many enough to share among cores.
     void make_chunks() {
         const std::span<const Corners> triangles(screen_.scene().triangles);
-        const std::size_t size = std::clamp<std::size_t>(triangles.size() / 64, 2048, 16384);
+        const std::size_t size = std::clamp<std::size_t>(triangles.size() / 64, 4096, 16384);
         const auto add = [&](std::span<const Corners> corners, std::span<const std::uint8_t> skip,
                              std::uint32_t first) {
             for (std::size_t begin = 0; begin < corners.size(); begin += size) {

@@ -33,7 +33,7 @@ namespace {
 constexpr std::size_t kWriteAfter = 4;
 
 /// Triangles between two updates of the hierarchical depth.
-constexpr std::uint32_t kRefreshAfter = 48;
+constexpr std::uint32_t kRefreshAfter = 80;
 
 // Reads bins one after the other, a vector of triangles at a time.
 class ItemReader {
@@ -106,7 +106,6 @@ public:
     }
 
 private:
-
     // While a vector is worked on, the corners of the next are fetched, for they are scattered over
     // memory.
     void draw_bins(std::span<const std::span<const TriangleItem>> bins) {
@@ -156,7 +155,7 @@ private:
             kept = dismiss(b, range.least, kept, hn::And(in_sheet, kept));
         if (hn::AllFalse(kI, kept)) return;
         note_drawn(b, kept);
-        waiting_.add(t.number, b, edges, plane, step_bits, kept);
+        waiting_.add(t.number, b, edges, plane, step_bits, kept, range.inside);
     }
 
     // Lanes where an edge has all of the box on its outer side.
@@ -237,7 +236,7 @@ private:
         draw_slots<3, 2>(Waiting::three_by_two);
         draw_slots<2, 3>(Waiting::two_by_three);
         draw_slots<3, 3>(Waiting::three_by_three);
-        draw_slots<0, 0>(Waiting::larger);
+        draw_slots<0, 0>(Waiting::other);
         waiting_.vectors = 0;
         if (tile_.drawn >= kRefreshAfter) refresh_depth();
     }
@@ -253,7 +252,7 @@ private:
             for (std::size_t part = 0; part < Tile::kCell; part += hn::Lanes(kI)) {
                 const Spot spot = part == 0 ? first : spot_of(part, step_bits);
                 if constexpr (kColumns == 0)
-                    doubtful |= draw_larger(waiting_, slot, spot, step_bits, part, tile_);
+                    doubtful |= draw_other(waiting_, slot, spot, step_bits, part, tile_);
                 else
                     doubtful |=
                         draw_shape<kColumns, kRows>(waiting_, slot, spot, step_bits, part, tile_);

@@ -45,7 +45,8 @@ HWY_INLINE VI dot(VI a, VI b) {
 /// Small triangles that are set up and wait to be drawn. A slot each; some slots stay empty.
 struct Waiting {
     static constexpr std::size_t kVectors = 4, kSlots = kVectors * kLanes;
-    enum Shape { two_by_two, three_by_two, two_by_three, three_by_three, larger, kShapes };
+    /// Other: larger, or reaches the near or the far plane, where depths have to be clamped.
+    enum Shape { two_by_two, three_by_two, two_by_three, three_by_three, other, kShapes };
 
     // Edge functions at the first sample of the first cell; their steps to the next column and row
     // as a pair; their steps to the next cell.
@@ -63,7 +64,7 @@ struct Waiting {
 
     /// Precondition: vectors < kVectors.
     HWY_INLINE void add(VI numbers, const Boxes& b, const Edges& edges, const Planes& plane,
-                        int step_bits, M chosen) {
+                        int step_bits, M chosen, M inside) {
         const std::size_t at = vectors++ * hn::Lanes(kI);
         const VI in = set(Tile::kCellSide - 1);
         const VI x = hn::And(b.column0, in), y = hn::And(b.row0, in);
@@ -91,20 +92,20 @@ struct Waiting {
         const VI lower = hn::ShiftRight<Tile::kCellBits>(hn::Add(y, b.rows));
         hn::Store(further, kI, columns + at);
         hn::Store(lower, kI, rows + at);
-        add_shapes(further, lower, static_cast<std::int32_t>(at), chosen);
+        add_shapes(further, lower, static_cast<std::int32_t>(at), chosen, inside);
     }
 
 private:
-    HWY_INLINE void add_shapes(VI further, VI lower, std::int32_t at, M chosen) {
+    HWY_INLINE void add_shapes(VI further, VI lower, std::int32_t at, M chosen, M inside) {
         const VI slots = hn::Add(hn::Iota(kI, 0), set(at));
         const M wide = hn::Gt(further, set(1)), high = hn::Gt(lower, set(1));
-        const M large = hn::And(chosen, hn::Gt(hn::Max(further, lower), set(2)));
-        const M rest = hn::AndNot(large, chosen);
+        const M few = hn::Lt(hn::Max(further, lower), set(3));
+        const M rest = hn::And(chosen, hn::And(few, inside));
         const auto add = [&](Shape shape, M mask) HWY_ATTR {
             hn::StoreU(hn::Compress(slots, mask), kI, slot[shape] + count[shape]);
             count[shape] += hn::CountTrue(kI, mask);
         };
-        add(larger, large);
+        add(other, hn::AndNot(rest, chosen));
         add(two_by_two, hn::AndNot(hn::Or(wide, high), rest));
         add(three_by_two, hn::And(rest, hn::AndNot(high, wide)));
         add(two_by_three, hn::And(rest, hn::AndNot(wide, high)));
@@ -147,11 +148,10 @@ struct Walk {
     // picture's or the tile's border, which nobody reads. Whole vectors are stored, not masked
     // ones: the next triangle most likely wants the same samples, and a load that a masked or
     // shifted store overlaps has to wait for it.
-    HWY_INLINE void offer(const VI edges[3], VF tx, VF ty, Tile& tile, std::size_t at) {
+    HWY_INLINE void offer(const VI edges[3], VF depth, Tile& tile, std::size_t at) {
         const VF infinity = hn::Set(kF, std::numeric_limits<float>::infinity());
         const M outside = hn::Lt(hn::Or3(edges[0], edges[1], edges[2]), set(0));
-        const VF z =
-            hn::IfThenElse(hn::RebindMask(kF, outside), infinity, stored_depth_of(z0, tx, ty));
+        const VF z = hn::IfThenElse(hn::RebindMask(kF, outside), infinity, depth);
         const VF old = hn::Load(kF, tile.depth + at);
         // Infinity less infinity is no number, which compares to nothing.
         const VF behind = hn::Sub(z, old);
@@ -163,7 +163,8 @@ struct Walk {
     }
 };
 
-// So many cells, without a branch. Returns whether a sample was too close to call.
+// So many cells, without a branch, of a triangle whose depths need no clamp. Returns whether a
+// sample was too close to call.
 template <int kColumns, int kRows>
 HWY_INLINE bool draw_shape(const Waiting& w, std::size_t slot, const Spot& spot, int step_bits,
                            std::size_t part, Tile& tile) {
@@ -183,7 +184,7 @@ HWY_INLINE bool draw_shape(const Waiting& w, std::size_t slot, const Spot& spot,
         for (int c = 0; c < kColumns; ++c) {
             const std::size_t at = first + static_cast<std::size_t>(r) * Tile::kCellRow +
                                    static_cast<std::size_t>(c) * Tile::kCell;
-            walk.offer(e, tx[c], ty, tile, at);
+            walk.offer(e, hn::Add(walk.z0, hn::Add(tx[c], ty)), tile, at);
             if (c + 1 < kColumns)
                 for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], right[k]);
         }
@@ -193,9 +194,9 @@ HWY_INLINE bool draw_shape(const Waiting& w, std::size_t slot, const Spot& spot,
     return !hn::AllFalse(kF, walk.doubtful);
 }
 
-// Any number of cells.
-HWY_INLINE bool draw_larger(const Waiting& w, std::size_t slot, const Spot& spot, int step_bits,
-                            std::size_t part, Tile& tile) {
+// Any number of cells, of any triangle.
+HWY_INLINE bool draw_other(const Waiting& w, std::size_t slot, const Spot& spot, int step_bits,
+                           std::size_t part, Tile& tile) {
     Walk walk(w, slot, spot);
     const VI step = set(Tile::kCellSide << step_bits);
     std::size_t at = static_cast<std::size_t>(w.cell[slot]) + part;
@@ -205,7 +206,8 @@ HWY_INLINE bool draw_larger(const Waiting& w, std::size_t slot, const Spot& spot
         const VF ty = hn::Mul(walk.gy, hn::ConvertTo(kF, walk.dy));
         for (std::int32_t c = 0; c <= w.columns[slot]; ++c) {
             const VF tx = hn::Mul(walk.gx, hn::ConvertTo(kF, dx));
-            walk.offer(e, tx, ty, tile, at + static_cast<std::size_t>(c) * Tile::kCell);
+            walk.offer(e, stored_depth_of(walk.z0, tx, ty), tile,
+                       at + static_cast<std::size_t>(c) * Tile::kCell);
             for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], set(w.right[k][slot]));
             dx = hn::Add(dx, step);
         }

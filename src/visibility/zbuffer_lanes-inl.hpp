@@ -267,9 +267,10 @@ HWY_INLINE Planes choose(M mask, const Planes& yes, const Planes& no) {
 }
 
 // Depth over boxes of so many further columns and rows. How far it rises from the anchor decides
-// whether floats will do; its least value is that of a corner, because every operation is monotone.
+// whether floats will do; its least and greatest values are those of corners, because every
+// operation is monotone. Inside: no stored depth has to be clamped.
 struct DepthRange {
-    M regular;
+    M regular, inside;
     VF least;
 };
 
@@ -282,8 +283,12 @@ HWY_INLINE DepthRange depth_over(const Planes& plane, VI columns, VI rows, int s
     const VF ty1 = hn::Mul(plane.gy, hn::ConvertTo(kF, dy1));
     const VF rise =
         hn::Add(hn::Max(hn::Abs(tx0), hn::Abs(tx1)), hn::Max(hn::Abs(ty0), hn::Abs(ty1)));
-    return {hn::RebindMask(kI, hn::Le(rise, hn::Set(kF, kRegularRise))),
-            hn::Add(plane.z0, hn::Add(hn::Min(tx0, tx1), hn::Min(ty0, ty1)))};
+    const VF least = hn::Add(plane.z0, hn::Add(hn::Min(tx0, tx1), hn::Min(ty0, ty1)));
+    const VF greatest = hn::Add(plane.z0, hn::Add(hn::Max(tx0, tx1), hn::Max(ty0, ty1)));
+    const auto inside =
+        hn::And(hn::Ge(least, hn::Zero(kF)), hn::Le(greatest, hn::Set(kF, kStoredDepthMax)));
+    return {hn::RebindMask(kI, hn::Le(rise, hn::Set(kF, kRegularRise))), hn::RebindMask(kI, inside),
+            least};
 }
 
 // Stored depth from the two terms of a sample.
