@@ -44,7 +44,8 @@ public:
           up_to_two_(input, selected, points),
           up_to_three_(input, selected, points),
           // Their planes are not those through their corners.
-          is_piece_(range.first >= input.screen.scene().triangle_count()) {}
+          is_piece_(range.first >= input.screen.scene().triangle_count()),
+          are_far_(input.screen.points().size_bytes() > kNear) {}
 
     void run() {
         static_assert(sizeof(Corners) == 3 * sizeof(std::uint32_t));
@@ -67,10 +68,12 @@ public:
 private:
     /// Vectors of triangles ahead of which their points are fetched.
     static constexpr std::size_t kAhead = 3;
+    /// Fewer bytes of points stay in a core's own cache.
+    static constexpr std::size_t kNear = std::size_t{1} << 20;
 
     HWY_INLINE void prefetch_points(const std::uint32_t* corners, const std::uint32_t* end) const {
+        if (!are_far_ || corners + 3 * hn::Lanes(kI) > end) return;
         const ScreenPoint* points = input_.screen.points().data();
-        if (corners + 3 * hn::Lanes(kI) > end) return;
         for (std::size_t i = 0; i < 3 * hn::Lanes(kI); ++i) hwy::Prefetch(points + corners[i]);
     }
 
@@ -178,7 +181,7 @@ private:
     Selected& selected_;
     TinyQueue<2> up_to_two_;
     TinyQueue<3> up_to_three_;
-    bool is_piece_;
+    bool is_piece_, are_far_;
     const std::uint32_t* sheets_ = nullptr;
 };
 

@@ -15,33 +15,48 @@ namespace sightline::zbuffer {
 /// back sides.
 class TriangleBins {
 public:
-    /// A counting sort.
+    /// A counting sort. Neighbours mostly go to one part, where each would have to wait for the
+    /// other's count: so the two halves of the list are taken at the same time, with counts of
+    /// their own.
     void sort(const Selected& selected, const TriangleRange& range, std::size_t parts) {
-        first_.assign(parts + 2, 0);
-        for (std::size_t i = 0; i < selected.count; ++i) ++first_[selected.tile[i] + 2];
+        first_.assign(2 * parts + 3, 0);
+        for_each_in_halves(selected, [&](std::size_t i, std::size_t half) {
+            ++first_[2 * selected.tile[i] + half + 2];
+        });
         std::uint32_t sum = 0;
         for (std::uint32_t& first : first_) first = sum += first;
         if (items_.size() < sum) items_.resize(sum);
-        // first_[part + 1] runs from the part's start to its end, where the next one starts.
-        for (std::size_t i = 0; i < selected.count; ++i) {
-            TriangleItem& item = items_[first_[selected.tile[i] + 1]++];
+        // first_[k + 1] runs from the start of a half of a part to its end, where the next starts.
+        for_each_in_halves(selected, [&](std::size_t i, std::size_t half) {
+            TriangleItem& item = items_[first_[2 * selected.tile[i] + half + 1]++];
             item.marked = selected.marked[i];
             item.corners = range.corners[item.number() - range.first];
-        }
+        });
     }
     /// Marks the tiles that something fell into.
     void mark(std::span<std::uint8_t> hit) const {
-        const std::uint32_t *front = first_.data(), *back = front + hit.size();
+        const std::uint32_t *front = first_.data(), *back = front + 2 * hit.size();
         for (std::size_t t = 0; t < hit.size(); ++t)
-            hit[t] |= static_cast<std::uint8_t>(front[t] != front[t + 1] || back[t] != back[t + 1]);
+            hit[t] |= static_cast<std::uint8_t>(front[2 * t] != front[2 * t + 2] ||
+                                                back[2 * t] != back[2 * t + 2]);
     }
     [[nodiscard]] std::span<const TriangleItem> of(std::size_t part) const {
-        return {items_.data() + first_[part], first_[part + 1] - first_[part]};
+        return {items_.data() + first_[2 * part], first_[2 * part + 2] - first_[2 * part]};
     }
 
 private:
+    template <class Visit>
+    static void for_each_in_halves(const Selected& selected, const Visit& visit) {
+        const std::size_t half = selected.count / 2;
+        for (std::size_t i = 0; i < half; ++i) {
+            visit(i, 0);
+            visit(half + i, 1);
+        }
+        if (2 * half < selected.count) visit(2 * half, 1);
+    }
+
     std::vector<TriangleItem> items_;
-    std::vector<std::uint32_t> first_;  // of each part, and the end
+    std::vector<std::uint32_t> first_;  // of each half of each part, and the end
 };
 
 /// One worker's.
