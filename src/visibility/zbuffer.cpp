@@ -9,13 +9,13 @@
 // ties go to the lower id. A minimum is associative, so tiles, threads and orders can't change a
 // bit.
 //
-// Two stages, both on all cores. Geometry: chunks of consecutive triangles are gathered a vector at
-// a time; what covers no sample is dropped; triangles of at most 3 x 3 samples are drawn to points
-// at once; the rest goes, by number, into the bins of its tiles, those that show their back apart.
-// Raster: each tile is owned by one worker, which takes its points and triangles, near chunks and
-// front sides first, into depth and ids that stay in the core's cache; while it draws, it writes
-// the tile before, and tiles that nothing fell into, past the caches. Under an observer triangles
-// are drawn one by one.
+// Two stages, both on all cores. Geometry: chunks of consecutive triangles are taken a vector at a
+// time; what covers no sample is dropped; triangles of at most 3 x 3 samples are drawn to points at
+// once; the rest goes into the bins of its tiles, those that show their back apart. Raster: each
+// tile is owned by one worker, which takes its points and triangles, near chunks and front sides
+// first, into depth and ids that stay in the core's cache; while it draws, it writes the tile
+// before, and tiles that nothing fell into, past the caches. Under an observer triangles are drawn
+// one by one.
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
 #include <algorithm>

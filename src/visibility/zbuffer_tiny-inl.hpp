@@ -130,7 +130,8 @@ private:
         const M served = shared_planes(input_, t.sheet, sx, sy, shared);
         if (hn::AllFalse(kI, hn::AndNot(served, wanted))) return shared;
         for (int k = 0; k < 3; ++k) t.z[k] = gather_axis(input_.screen, 2, t.corner[k]);
-        return choose(served, shared, own_planes(t, sx, sy));
+        const Planes own = own_planes(t, sx, sy);
+        return hn::AllFalse(kI, served) ? own : choose(served, shared, own);
     }
 
     // Where samples are: their tile, and their place in it, which is the sum of what column and row
@@ -166,7 +167,7 @@ private:
             hn::Or(hn::Xor(x.tile[0], set(column)), hn::Xor(x.tile[kSide - 1], set(column))),
             hn::Xor(y.tile[0], set(row)), hn::Xor(y.tile[kSide - 1], set(row)));
         const bool together = hn::AllTrue(kI, hn::Eq(other, set(0)));
-        const auto tile = static_cast<std::size_t>(row * grid_.tiles_x + column);
+        const auto tile = static_cast<std::size_t>(std::int64_t{row} * grid_.tiles_x + column);
         for (int r = 0; r < kSide; ++r) {
             const VI dy = hn::Add(plane.dy, set(r << grid_.step_bits));
             const VF ty = hn::Mul(plane.gy, hn::ConvertTo(kF, dy));

@@ -79,7 +79,7 @@ inline void write_half_row(TileWriter& writer, PendingRows& rows) {
 }
 
 /// Half-rows that are written at a time; as many as the rows of a cell.
-constexpr std::int32_t kHalfRows = Tile::kCellSide;
+inline constexpr std::int32_t kHalfRows = Tile::kCellSide;
 
 // Whether a tile can go cell by cell: all of its rows begin and end with whole vectors.
 inline bool goes_by_cells(const TileWriter& writer, const PendingRows& rows) {

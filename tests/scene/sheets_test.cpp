@@ -1,7 +1,9 @@
 // Sheets: what is coplanar in the world shares a plane on the screen, and nothing else does.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "support/scenes.hpp"
 
@@ -84,6 +86,21 @@ TEST(Sheets, ParallelWallsApartAreApart) {
                                 .quad({0, 0, gap}, {1, 0, gap}, {1, 1, gap}, {0, 1, gap})
                                 .build();
         EXPECT_EQ(scene.sheets.count(), 2u) << gap;
+    }
+}
+
+TEST(Sheets, AreNumberedInTheOrderOfTheirFirstTriangles) {
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        const Sheets sheets = hostile_scene(seed).sheets;
+        for (std::size_t s = 0; s < sheets.count(); ++s) {
+            const std::span<const std::uint32_t> members(sheets.members.data() + sheets.first[s],
+                                                         sheets.first[s + 1] - sheets.first[s]);
+            ASSERT_GE(members.size(), 2u);
+            ASSERT_TRUE(std::is_sorted(members.begin(), members.end())) << seed;
+            for (const std::uint32_t t : members) ASSERT_EQ(sheets.of(t), s) << seed;
+            if (s == 0) continue;
+            ASSERT_LT(sheets.members[sheets.first[s - 1]], members[0]) << seed;
+        }
     }
 }
 
