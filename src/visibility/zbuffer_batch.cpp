@@ -208,10 +208,13 @@ private:
 
     // Which blocks will have to be looked at again, as columns and rows of blocks: bits.
     HWY_INLINE void note_drawn(const Boxes& b, M kept) {
+        // The boxes of other lanes may lie anywhere.
+        const auto block = [&](VI at) HWY_ATTR {
+            return hn::ShiftRight<Tile::kBlockBits>(hn::IfThenElseZero(kept, at));
+        };
         const auto bits = [&](VI first, VI further) HWY_ATTR {
-            const VI one = set(1), two = set(2);
-            const VI begin = hn::Shl(one, hn::ShiftRight<Tile::kBlockBits>(first));
-            const VI end = hn::Shl(two, hn::ShiftRight<Tile::kBlockBits>(hn::Add(first, further)));
+            const VI begin = hn::Shl(set(1), block(first));
+            const VI end = hn::Shl(set(2), block(hn::Add(first, further)));
             return hn::IfThenElseZero(kept, hn::Sub(end, begin));
         };
         dirty_columns_ = hn::Or(dirty_columns_, bits(b.column0, b.columns));
