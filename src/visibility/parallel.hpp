@@ -5,8 +5,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "math/arena.hpp"
 #include "sightline/visibility.hpp"
@@ -46,6 +48,42 @@ void for_each_index(std::uint32_t n, const ResolveOptions& options, const Body& 
     else
         in_arena(options.threads, [&] { each_index(n, false, body); });
 }
+
+/// Numbers 0 .. n-1, each for one worker: for each a part of them in succession, and what others
+/// have left when that is done. In the next frame a worker so finds in its cache what it had there
+/// in the last one, and its neighbours, too.
+class Shares {
+public:
+    Shares() = default;
+    Shares(std::size_t n, std::uint32_t workers) : n_(n), next_(workers) {
+        for (std::uint32_t w = 0; w < workers; ++w) next_[w].number = begin(w);
+    }
+
+    /// body(i) for all that this worker gets.
+    template <class Body>
+    void take(std::uint32_t worker, const Body& body) {
+        const std::size_t workers = next_.size();
+        for (std::size_t k = 0; k < workers; ++k) {
+            const std::size_t part = (worker + k) % workers;
+            for (;;) {
+                const std::size_t i = next_[part].number.fetch_add(1, std::memory_order_relaxed);
+                if (i >= begin(part + 1)) break;
+                body(i);
+            }
+        }
+    }
+
+private:
+    /// On a cache line of its own.
+    struct alignas(64) Next {
+        std::atomic<std::size_t> number{0};
+    };
+
+    [[nodiscard]] std::size_t begin(std::size_t part) const { return n_ * part / next_.size(); }
+
+    std::size_t n_ = 0;
+    std::vector<Next> next_;
+};
 
 /// Resolves the rows that `out` holds, band by band. Precondition: they begin with a band.
 inline void resolve_bands(RowSource& source, const ResolveOptions& options, Visibility& out) {

@@ -19,7 +19,6 @@
 //
 // Time O(triangles + triangle-tile pairs + covered samples), memory O(pairs) beside the picture.
 #include <algorithm>
-#include <atomic>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -56,9 +55,11 @@ public:
         if (space.workers.size() < workers_) space.workers.resize(workers_);
         const auto stages = [&] {
             make_shared_gradients();
-            each_index(workers_, alone_, [&](std::uint32_t w) { take_chunks(space.workers[w]); });
-            share_tiles();
-            each_index(workers_, alone_, [&](std::uint32_t w) { draw_tiles(space.workers[w]); });
+            Shares chunks(chunks_.size(), workers_);
+            each_index(workers_, alone_, [&](std::uint32_t w) { take_chunks(w, chunks); });
+            find_drawn_tiles();
+            Shares tiles(drawn_.size(), workers_);
+            each_index(workers_, alone_, [&](std::uint32_t w) { draw_tiles(w, tiles); });
         };
         if (alone_)
             stages();
@@ -119,19 +120,20 @@ private:
 
     [[nodiscard]] RasterInput input() const { return {screen_, grid_, shared_, options_.observer}; }
 
+    [[nodiscard]] Worker& worker(std::uint32_t w) { return (*space_).workers[w]; }
+
     // One worker's share of the geometry stage.
-    void take_chunks(Worker& worker) {
+    void take_chunks(std::uint32_t w, Shares& chunks) {
+        Worker& mine = worker(w);
         const std::size_t tiles = grid_.tile_count();
-        worker.points.start(tiles);
-        worker.hit.assign(tiles, 0);
-        for (;;) {
-            const std::size_t c = next_chunk_.fetch_add(1, std::memory_order_relaxed);
-            if (c >= chunks_.size()) break;
+        mine.points.start(tiles);
+        mine.hit.assign(tiles, 0);
+        chunks.take(w, [&](std::size_t c) {
             TriangleBins& bins = (*space_).chunks[c];
-            take_triangles(input(), chunks_[c], worker.selected, worker.points);
-            bins.sort(worker.selected, chunks_[c], 2 * tiles);
-            bins.mark(worker.hit);
-        }
+            take_triangles(input(), chunks_[c], mine.selected, mine.points);
+            bins.sort(mine.selected, chunks_[c], 2 * tiles);
+            bins.mark(mine.hit);
+        });
     }
 
     [[nodiscard]] bool is_hit(std::uint32_t tile) const {
@@ -169,7 +171,7 @@ private:
 
     // Tiles that something fell into are drawn; the others can be written at any time. A watcher
     // sees them all, in order.
-    void share_tiles() {
+    void find_drawn_tiles() {
         const auto tiles = static_cast<std::uint32_t>(grid_.tile_count());
         for (std::uint32_t t = 0; t < tiles; ++t)
             if (options_.observer != nullptr || is_hit(t))
@@ -179,18 +181,17 @@ private:
     }
 
     // One worker's share of the raster stage. While a tile is drawn, the one before it is written.
-    void draw_tiles(Worker& worker) {
+    void draw_tiles(std::uint32_t w, Shares& tiles) {
+        Worker& mine = worker(w);
         TileWriter writer{out_.ids.data(), out_.depth.data(), grid_.columns, empty_, {}, {}};
         bool odd = false;
-        for (;;) {
-            const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
-            if (k >= drawn_.size()) break;
-            Tile& tile = worker.tiles[odd ? 1 : 0];
+        tiles.take(w, [&](std::size_t k) {
+            Tile& tile = mine.tiles[odd ? 1 : 0];
             odd = !odd;
-            draw_tile(drawn_[k], tile, worker, writer);
+            draw_tile(drawn_[k], tile, mine, writer);
             write_drawn_tile(writer);
             writer.drawn = PendingRows(&tile, tile.area(), grid_.columns);
-        }
+        });
         write_rest(writer);
     }
 
@@ -246,7 +247,6 @@ private:
     std::uint32_t workers_;
     LentWorkspace space_;
     std::vector<std::uint32_t> drawn_;  ///< tiles that something fell into
-    std::atomic<std::size_t> next_chunk_{0}, next_{0};
     EmptyTiles empty_;
 };
 
