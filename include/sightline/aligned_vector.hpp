@@ -9,18 +9,23 @@
 
 namespace sightline {
 
+/// Memory for an array, aligned to 64 bytes. Large ones lie in huge pages where the system has
+/// them to give: fewer translations of addresses are missed. Throws std::bad_alloc.
+[[nodiscard]] void* allocate_array(std::size_t bytes);
+/// Gives it back. `bytes` as it was asked for.
+void free_array(void* array, std::size_t bytes) noexcept;
+
 template <class T>
 struct AlignedAllocator {
     using value_type = T;
-    static constexpr std::align_val_t kAlignment{64};
 
     AlignedAllocator() = default;
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) noexcept {}
     [[nodiscard]] T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new(n * sizeof(T), kAlignment));
+        return static_cast<T*>(allocate_array(n * sizeof(T)));
     }
-    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, kAlignment); }
+    void deallocate(T* p, std::size_t n) noexcept { free_array(p, n * sizeof(T)); }
     template <class U>
     void construct(U* p) noexcept {
         ::new (static_cast<void*>(p)) U;

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sightline/aligned_vector.hpp"
 #include "sightline/camera.hpp"
 
 namespace sightline {
@@ -112,7 +113,7 @@ struct Quadric {
 /// triangles of a sheet share one plane on every screen, so that walls, decals and the halves of a
 /// quad never fight: where they meet in depth they tie exactly, and the lower id wins.
 struct Sheets {
-    std::vector<std::uint32_t> of_triangle;  ///< sheet of each triangle, or kNone; may be empty
+    AlignedVector<std::uint32_t> of_triangle;  ///< sheet of each triangle, or kNone; may be empty
     /// Triangles of sheet s: members[first[s]] .. members[first[s + 1] - 1], in ascending order.
     std::vector<std::uint32_t> first;
     std::vector<std::uint32_t> members;
@@ -147,8 +148,8 @@ struct Motion {
 /// A whole scene. Plain data, structure of arrays; filled by a loader or by hand, then made ready
 /// by finish_scene(). Read-only from then on, so any number of threads may use it.
 struct Scene {
-    std::vector<glm::dvec3> positions;  ///< world space; equal positions of an object are joined
-    std::vector<Corners> triangles;     ///< indices into positions
+    AlignedVector<glm::dvec3> positions;  ///< world space; equal positions of an object are joined
+    AlignedVector<Corners> triangles;     ///< indices into positions
 
     std::vector<std::uint32_t> triangle_polygon;  ///< source polygon of each triangle
     /// Bit k set: side k (from corner k to corner k+1) is an edge of the source polygon, not a
@@ -157,13 +158,13 @@ struct Scene {
 
     /// Unit vertex normals and their indices per corner. triangle_normals is empty when no object
     /// has normals (they are then made on demand by make_normals()).
-    std::vector<glm::vec3> normals;
-    std::vector<Corners> triangle_normals;
+    AlignedVector<glm::vec3> normals;
+    AlignedVector<Corners> triangle_normals;
 
     /// Vertex colours (linear, straight alpha) and their indices per corner; a triangle of an
     /// object without colours has kNone in its corners. Empty when there are none at all.
-    std::vector<glm::vec4> colors;
-    std::vector<Corners> triangle_colors;
+    AlignedVector<glm::vec4> colors;
+    AlignedVector<Corners> triangle_colors;
 
     std::vector<Object> objects;  ///< in ascending order of first_triangle, without gaps
     /// Surfaces that are not polygons. The id of quadric k is triangle_count() + k. Each is an

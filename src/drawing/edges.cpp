@@ -95,7 +95,7 @@ private:
 // Within an object equal positions share an index already.
 void EdgeFinder::join_positions() {
     if (scene_.objects.size() < 2) return;
-    std::vector<glm::dvec3> points;
+    AlignedVector<glm::dvec3> points;
     PositionJoiner joiner(points, scene_.positions.size());
     std::vector<std::uint32_t> representative;
     joined_.resize(scene_.positions.size());

@@ -49,7 +49,7 @@ public:
     SlabMesher(const SectionGrid& grid, const SectionLayer& low, const SectionLayer& high)
         : nx_(grid.x.size()), ny_(grid.y.size()), low_(low), high_(high) {}
 
-    std::vector<Corners> run() {
+    AlignedVector<Corners> run() {
         for (std::size_t j = 0; j + 1 < ny_; ++j)
             for (std::size_t i = 0; i + 1 < nx_; ++i) visit_cell(j * nx_ + i);
         return std::move(triangles_);
@@ -153,7 +153,7 @@ private:
     const SectionLayer &low_, &high_;
     std::size_t node_ = 0;  // the cell's first corner
     std::array<Sign, 8> signs_{};
-    std::vector<Corners> triangles_;
+    AlignedVector<Corners> triangles_;
 };
 
 /// A triangle by its corners, whichever way round.
@@ -177,7 +177,7 @@ struct Unturned {
 
 /// Removes pairs of triangles with the same corners that are turned opposite ways. Only such with
 /// nodes for all of their corners can lie in two cells.
-void cancel_pairs(const std::vector<std::uint8_t>& is_node, std::vector<Corners>& triangles) {
+void cancel_pairs(const std::vector<std::uint8_t>& is_node, AlignedVector<Corners>& triangles) {
     std::vector<Unturned> flat;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const Corners c = triangles[t];
@@ -236,11 +236,11 @@ private:
             is_node_.insert(is_node_.end(), layer.node_point.begin(), layer.node_point.end());
         }
         const std::size_t first = begin == 0 ? 0 : begin - 1;
-        std::vector<std::vector<Corners>> slabs(end - 1 - first);
+        std::vector<AlignedVector<Corners>> slabs(end - 1 - first);
         tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
             slabs[s] = SlabMesher(grid_, layers_[first + s], layers_[first + s + 1]).run();
         });
-        for (const std::vector<Corners>& slab : slabs)
+        for (const AlignedVector<Corners>& slab : slabs)
             mesh_.triangles.insert(mesh_.triangles.end(), slab.begin(), slab.end());
         for (std::size_t k = first; k + 1 < end; ++k) layers_[k] = {};
     }

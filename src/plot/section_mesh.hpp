@@ -24,8 +24,8 @@ struct SectionGrid {
 /// Corners are on the surface; no two points are equal and no two corners of a triangle are the
 /// same. Triangles turn their fronts to where the field grows.
 struct SectionMesh {
-    std::vector<glm::dvec3> points;
-    std::vector<Corners> triangles;
+    AlignedVector<glm::dvec3> points;
+    AlignedVector<Corners> triangles;
 };
 
 /// The surface on which a field is 0, within a grid. Every triangle lies in one cell, so wherever

@@ -23,7 +23,7 @@ Error too_large(const char* what) {
 template <class T, class Middle>
 class SideMiddles {
 public:
-    SideMiddles(std::vector<T>& values, Middle middle, std::size_t expected)
+    SideMiddles(AlignedVector<T>& values, Middle middle, std::size_t expected)
         : values_(values), middle_(middle) {
         index_.reserve(expected);
     }
@@ -36,16 +36,16 @@ public:
     }
 
 private:
-    std::vector<T>& values_;
+    AlignedVector<T>& values_;
     Middle middle_;
     std::unordered_map<std::uint64_t, std::uint32_t> index_;
 };
 
 /// The four children of each triangle, in one index array; kNone (no attribute) is inherited.
 template <class T, class Middle>
-std::vector<Corners> split_corners(const std::vector<Corners>& corners, std::vector<T>& values,
+AlignedVector<Corners> split_corners(const AlignedVector<Corners>& corners, AlignedVector<T>& values,
                                    Middle middle) {
-    std::vector<Corners> children;
+    AlignedVector<Corners> children;
     children.reserve(corners.size() * 4);
     SideMiddles<T, Middle> mid(values, middle, corners.size() * 3 / 2 + 16);
     for (const Corners& t : corners) {

@@ -23,7 +23,7 @@ std::uint64_t hash(const glm::dvec3& p) {
 
 }  // namespace
 
-PositionJoiner::PositionJoiner(std::vector<glm::dvec3>& points, std::size_t expected)
+PositionJoiner::PositionJoiner(AlignedVector<glm::dvec3>& points, std::size_t expected)
     : points_(points),
       base_(points.size()),
       slots_(std::bit_ceil(std::max(kFirstSlots, 2 * expected)), kNone) {}

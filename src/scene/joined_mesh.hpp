@@ -17,7 +17,7 @@ class PositionJoiner {
 public:
     /// `points` must outlive the joiner; what it holds already takes no part in the joining.
     /// Quickest when no more than `expected` positions are added.
-    explicit PositionJoiner(std::vector<glm::dvec3>& points, std::size_t expected = 0);
+    explicit PositionJoiner(AlignedVector<glm::dvec3>& points, std::size_t expected = 0);
 
     /// Index in `points` of this position, appended when new. Amortised O(1).
     /// Precondition: finite; fewer than 2^32 - 1 points.
@@ -27,15 +27,15 @@ private:
     void grow();
     [[nodiscard]] std::size_t slot_of(const glm::dvec3& position) const;
 
-    std::vector<glm::dvec3>& points_;
+    AlignedVector<glm::dvec3>& points_;
     std::size_t base_;                  ///< first point of this joiner
     std::vector<std::uint32_t> slots_;  ///< index of a point, or kNone; a power of two long
 };
 
 /// Triangles of one object on its own joined points.
 struct JoinedMesh {
-    std::vector<glm::dvec3> points;
-    std::vector<Corners> triangles;  ///< in the object's order
+    AlignedVector<glm::dvec3> points;
+    AlignedVector<Corners> triangles;  ///< in the object's order
 };
 
 /// Joins the objects of a scene one after another with one piece of scratch memory. Not

@@ -41,7 +41,7 @@ void for_each_quadric(const Scene& scene, ObjectRange objects, const Visit& visi
 
 /// The different ones among the indices of the triangles' corners; `corners` may be empty.
 std::vector<std::uint32_t> used_by(const Scene& scene, ObjectRange objects,
-                                   const std::vector<Corners>& corners) {
+                                   const AlignedVector<Corners>& corners) {
     std::vector<std::uint32_t> used;
     if (corners.empty()) return used;
     for_each_triangle(scene, objects, [&](std::uint32_t t) {
@@ -62,7 +62,7 @@ glm::vec3 turned(const glm::vec3& normal, const math::Frame& frame) {
 
 /// A mirror turns fronts into backs, so the corners run backwards; the first stays the first.
 void turn_round(Scene& scene, std::uint32_t t) {
-    const auto swap = [t](std::vector<Corners>& corners) {
+    const auto swap = [t](AlignedVector<Corners>& corners) {
         if (!corners.empty()) std::swap(corners[t].y, corners[t].z);
     };
     swap(scene.triangles);

@@ -44,7 +44,7 @@ void join_point(QuadricMesh& mesh, std::uint32_t segments, std::uint32_t ring, s
     }
 }
 
-std::uint32_t size(const std::vector<glm::dvec3>& points) {
+std::uint32_t size(const AlignedVector<glm::dvec3>& points) {
     return static_cast<std::uint32_t>(points.size());
 }
 
@@ -98,7 +98,7 @@ public:
 
 private:
     /// No attribute for triangles that have none yet.
-    void fill(std::vector<Corners>& corners) const {
+    void fill(AlignedVector<Corners>& corners) const {
         corners.resize(scene_.triangles.size(), Corners(kNone));
     }
 

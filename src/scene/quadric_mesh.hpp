@@ -12,8 +12,8 @@ namespace sightline {
 /// A mesh in a quadric's own coordinates. Triangles are counter-clockwise seen from where the
 /// quadric's polynomial is positive: from outside.
 struct QuadricMesh {
-    std::vector<glm::dvec3> points;
-    std::vector<Corners> triangles;
+    AlignedVector<glm::dvec3> points;
+    AlignedVector<Corners> triangles;
     /// Two triangles in succession are a quad with the diagonal of corners 0 and 2 of the first;
     /// otherwise each triangle is a polygon.
     bool quads = false;

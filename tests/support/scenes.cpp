@@ -63,13 +63,13 @@ SceneBuilder& SceneBuilder::box(glm::dvec3 lo, glm::dvec3 hi) {
     return quad(at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
 }
 
-void SceneBuilder::vertex_normals(std::vector<glm::vec3> normals) {
-    scene.normals = std::move(normals);
+void SceneBuilder::vertex_normals(const std::vector<glm::vec3>& normals) {
+    scene.normals.assign(normals.begin(), normals.end());
     scene.triangle_normals = scene.triangles;
 }
 
-void SceneBuilder::vertex_colors(std::vector<glm::vec4> colors) {
-    scene.colors = std::move(colors);
+void SceneBuilder::vertex_colors(const std::vector<glm::vec4>& colors) {
+    scene.colors.assign(colors.begin(), colors.end());
     scene.triangle_colors = scene.triangles;
 }
 

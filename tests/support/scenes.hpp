@@ -41,8 +41,8 @@ public:
     /// Twelve triangles, fronts outside.
     SceneBuilder& box(glm::dvec3 lo, glm::dvec3 hi);
     /// One for each corner so far, polygon by polygon.
-    void vertex_normals(std::vector<glm::vec3> normals);
-    void vertex_colors(std::vector<glm::vec4> colors);
+    void vertex_normals(const std::vector<glm::vec3>& normals);
+    void vertex_colors(const std::vector<glm::vec4>& colors);
 
     /// Finished, with equal corners joined.
     [[nodiscard]] Scene build() const;

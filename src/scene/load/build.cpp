@@ -50,8 +50,8 @@ const char* fault_of(const glm::dvec3& p) {
 }
 
 /// Makes room for `size` elements at once, without losing geometric growth over many calls.
-template <class T>
-void reserve_more(std::vector<T>& vector, std::size_t size) {
+template <class Vector>
+void reserve_more(Vector& vector, std::size_t size) {
     if (size > vector.capacity()) vector.reserve(std::max(size, 2 * vector.capacity()));
 }
 
