@@ -14,7 +14,8 @@ namespace sightline {
 /// cores are allowed: results never depend on the number, and tests make sure of it.
 template <class Work>
 auto in_arena(int threads, const Work& work) {
-    // A new arena's workers have to be woken up; those of the one that we are in may still be there.
+    // A new arena's workers have to be woken up; those of the one that we are in may still be
+    // there.
     if (threads <= 0 || threads == tbb::this_task_arena::max_concurrency()) return work();
     std::optional<tbb::global_control> more;
     if (threads > tbb::info::default_concurrency())

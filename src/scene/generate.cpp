@@ -43,8 +43,8 @@ private:
 
 /// The four children of each triangle, in one index array; kNone (no attribute) is inherited.
 template <class T, class Middle>
-AlignedVector<Corners> split_corners(const AlignedVector<Corners>& corners, AlignedVector<T>& values,
-                                   Middle middle) {
+AlignedVector<Corners> split_corners(const AlignedVector<Corners>& corners,
+                                     AlignedVector<T>& values, Middle middle) {
     AlignedVector<Corners> children;
     children.reserve(corners.size() * 4);
     SideMiddles<T, Middle> mid(values, middle, corners.size() * 3 / 2 + 16);
