@@ -27,6 +27,11 @@ if(SIGHTLINE_SANITIZE)
     target_compile_options(sightline_options INTERFACE
       -fno-sanitize=null,pointer-overflow,object-size)
   endif()
+  if(SIGHTLINE_SANITIZE MATCHES "thread")
+    # It can follow only threads whose library is compiled with it.
+    target_include_directories(sightline_options BEFORE INTERFACE
+      "${PROJECT_SOURCE_DIR}/tests/support/tsan")
+  endif()
   target_link_options(sightline_options INTERFACE -fsanitize=${SIGHTLINE_SANITIZE})
   # SSE4 would only repeat what AVX2 (no mask registers) and the emulated target show, and vector
   # code under sanitizers is what takes longest to compile.
