@@ -13,7 +13,8 @@ namespace {
 TEST(AlignedVector, BeginsOnACacheLineAndKeepsWhatItHolds) {
     // Around the size from which on arrays lie in huge pages, and growing across it.
     AlignedVector<std::uint32_t> grown;
-    for (const std::size_t n : {1, 1000, (1 << 20) - 1, 1 << 20, (1 << 20) + 1, 5'000'000}) {
+    constexpr std::size_t kLarge = std::size_t{1} << 20;
+    for (const std::size_t n : {kLarge / 1000, kLarge - 1, kLarge, kLarge + 1, 5 * kLarge}) {
         AlignedVector<std::uint32_t> array(n);
         std::iota(array.begin(), array.end(), 0u);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % 64, 0u) << n;

@@ -11,7 +11,7 @@ namespace sightline {
 namespace {
 
 TEST(Shares, EveryNumberIsTakenOnceWhoeverComes) {
-    for (const std::size_t n : {0, 1, 2, 7, 64}) {
+    for (const std::size_t n : {0u, 1u, 2u, 7u, 64u}) {
         for (const std::uint32_t workers : {1u, 2u, 3u, 16u}) {
             for (std::uint32_t absent = 0; absent <= workers; ++absent) {
                 if (workers == 1 && absent == 0) continue;  // somebody has to come
