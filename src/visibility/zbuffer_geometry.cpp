@@ -121,8 +121,9 @@ private:
     }
 
     // The borders of the picture cut no tiny box: samples outside of a whole one are not covered.
+    // Samples may be so many units apart, on a page, that a triangle with few is not small.
     HWY_INLINE M tiny_lanes(const Triangles& t, const Boxes& b) const {
-        const M narrow = within(t, (kTinySide + 1) << grid_.step_bits);
+        const M narrow = within(t, std::min((kTinySide + 1) << grid_.step_bits, kSmallExtent));
         const M few = hn::Lt(hn::Max(b.columns, b.rows), set(kTinySide));
         const M inside = hn::And(hn::Lt(b.column0, set(grid_.columns - kTinySide)),
                                  hn::Lt(b.row0, set(grid_.rows - kTinySide)));

@@ -39,6 +39,7 @@ public:
 
     HWY_INLINE void add(const Triangles& t, M chosen) {
         if (hn::AllFalse(kI, chosen)) return;
+        // Behind the chosen lanes of a vector come others, with whatever triangles they hold.
         const auto append = [&](VI v, std::int32_t* column)
                                 HWY_ATTR { append_lanes(v, chosen, column + count_); };
         append(t.number, number_);
@@ -57,29 +58,45 @@ public:
     }
 
     void finish() {
-        // Lanes beyond the last hold what was there before: triangles, or zeros.
-        if (count_ > 0) draw(count_);
+        if (count_ == 0) return;
+        pad();
+        draw(count_);
         count_ = 0;
     }
 
 private:
-    HWY_INLINE void drop_first() {
-        const auto drop = [](std::int32_t* column) HWY_ATTR {
-            hn::Store(hn::LoadU(kI, column + hn::Lanes(kI)), kI, column);
-        };
-        drop(number_);
-        drop(sheet_);
+    template <class Change>
+    HWY_INLINE void for_each_column(const Change& change) {
+        change(number_);
+        change(sheet_);
         for (int k = 0; k < 3; ++k) {
-            drop(corner_[k]);
-            drop(x_[k]);
-            drop(y_[k]);
+            change(corner_[k]);
+            change(x_[k]);
+            change(y_[k]);
         }
     }
 
+    HWY_INLINE void drop_first() {
+        for_each_column([](std::int32_t* column) HWY_ATTR {
+            hn::Store(hn::LoadU(kI, column + hn::Lanes(kI)), kI, column);
+        });
+    }
+
+    // Lanes beyond the last one waiting hold what compression left there: clipped triangles, large
+    // ones, even numbers that no triangle has. They become copies of a tiny triangle, so that what
+    // draw() relies on is true of every lane.
+    HWY_INLINE void pad() {
+        const M waiting = hn::FirstN(kI, count_);
+        for_each_column([waiting](std::int32_t* column) HWY_ATTR {
+            hn::Store(hn::IfThenElse(waiting, hn::Load(kI, column), set(column[0])), kI, column);
+        });
+    }
+
+    // Draws the first n lanes. Precondition: all lanes hold tiny triangles.
     HWY_INLINE void draw(std::size_t n) {
         Triangles t;
         t.number = hn::Load(kI, number_);
-        t.sheet = hn::IfThenElse(hn::FirstN(kI, n), hn::Load(kI, sheet_), set(-1));
+        t.sheet = hn::Load(kI, sheet_);
         for (int k = 0; k < 3; ++k) {
             t.corner[k] = hn::Load(kI, corner_[k]);
             t.x[k] = hn::Load(kI, x_[k]);
@@ -92,7 +109,8 @@ private:
         const VI doubled = doubled_area(t);
         Edges edges = edges_at(t, doubled, sx, sy, grid_.step_bits);
         const M wanted = hn::And(hn::FirstN(kI, n), hn::Ne(doubled, set(0)));
-        // Far outside: nothing is covered.
+        // Far outside: nothing is covered, for a tiny triangle's steps do not lead back in.
+        static_assert(2 * (kSide - 1) * kSmallExtent < 1 << 30);
         edges.at[0] = hn::IfThenElse(wanted, edges.at[0], set(-(1 << 30)));
 
         M covered[kSide * kSide];
