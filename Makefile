@@ -15,7 +15,7 @@ help:
 	echo 'make demo       render the sample models into out/demo/'
 	echo 'make test       every test, also under sanitizers, and a short fuzz run'
 	echo 'make test-full  the same with the heavy cases, the thread sanitizer and longer fuzzing'
-	echo 'make lint       format and static analysis'
+	echo 'make lint       format, static analysis, and what the compiler makes of hot loops'
 	echo 'make gallery    draw the pictures of docs/gallery/ and docs/algorithms/ anew'
 	echo 'make install    into PREFIX (default /usr/local), below DESTDIR if that is set'
 	echo 'make clean      remove build/ and out/'

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Format (clang-format) and static analysis (clang-tidy) of the sources; warnings are errors.
+# Format (clang-format) and static analysis (clang-tidy) of the sources; warnings are errors. And
+# what the compiler makes of the vector loops.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install-deps.sh build lint
@@ -16,4 +17,7 @@ echo "Analysing src/ and cli/ with clang-tidy"
 cmake --preset release -B build/lint -D SIGHTLINE_TESTS=OFF >build/lint.log
 find src cli -name '*.cpp' -print0 | sort -z |
     xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/lint --quiet 2>build/lint.log
+
+echo "Disassembling the vector loops"
+scripts/check-hot-loops.sh build/lint
 echo "lint: clean"

@@ -16,6 +16,7 @@
 
 #include <limits>
 
+#include "visibility/compress-inl.hpp"
 #include "visibility/zbuffer_lanes-inl.hpp"
 #include "visibility/zbuffer_stages.hpp"
 
@@ -102,7 +103,7 @@ private:
         const M few = hn::Lt(hn::Max(further, lower), set(3));
         const M rest = hn::And(chosen, hn::And(few, inside));
         const auto add = [&](Shape shape, M mask) HWY_ATTR {
-            hn::StoreU(hn::Compress(slots, mask), kI, slot[shape] + count[shape]);
+            append_lanes(slots, mask, slot[shape] + count[shape]);
             count[shape] += hn::CountTrue(kI, mask);
         };
         add(other, hn::AndNot(rest, chosen));

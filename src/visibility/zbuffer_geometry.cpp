@@ -12,6 +12,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "visibility/compress-inl.hpp"
 #include "visibility/zbuffer_lanes-inl.hpp"
 #include "visibility/zbuffer_tiny-inl.hpp"
 

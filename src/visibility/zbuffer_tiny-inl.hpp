@@ -16,19 +16,13 @@
 
 #include <bit>
 
+#include "visibility/compress-inl.hpp"
 #include "visibility/zbuffer_lanes-inl.hpp"
 #include "visibility/zbuffer_stages.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::zbuffer::HWY_NAMESPACE {
 namespace {
-
-// Appends the lanes of a mask to an array that has room for a whole vector.
-template <class V, class Mask, class T>
-HWY_INLINE void append_lanes(V v, Mask mask, T* to) {
-    const hn::DFromV<V> d;
-    hn::StoreU(hn::Compress(v, mask), d, to);
-}
 
 /// Tiny triangles that wait to be drawn, of at most kSide samples a side.
 template <int kSide>
