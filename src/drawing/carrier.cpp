@@ -56,6 +56,19 @@ ExactCrossing exact_crossing(const PageLine& p, const PageLine& q) {
             floor_quotient((pn * ql - pl * qn) << kFraction, w)};
 }
 
+/// Of the depth of a plane where two lines cross, the numerator is a product of a crossing's and a
+/// factor of the plane, and so is the denominator.
+static_assert(8 * kCoordBits + 3 * kDepthBits + 20 < 511);
+
+double exact_depth(const PageLine& p, const PageLine& q, const Plane& plane) {
+    const Int512 pl(p.l), pm(p.m), pn(p.n), ql(q.l), qm(q.m), qn(q.n);
+    const Int512 w = pl * qm - pm * ql, x = pm * qn - pn * qm, y = pn * ql - pl * qn;
+    const Int512 depth = Int512(plane.c) * plane.at.z * w + Int512(plane.a) * (x - w * plane.at.x) +
+                         Int512(plane.b) * (y - w * plane.at.y);
+    const Int512 unit = Int512(plane.c) * w;
+    return static_cast<double>(floor_quotient(2 * depth + unit, 2 * unit));
+}
+
 }  // namespace
 
 int growth(const PageLine& carrier, const PageLine& b) {
@@ -67,6 +80,14 @@ int growth(const PageLine& carrier, const PageLine& b) {
 int sign_of_parallel(const PageLine& carrier, const PageLine& across, const PageLine& parallel) {
     // sign_at_crossing() is right where its first two lines turn clockwise, else the opposite is.
     return -sign_at_crossing(carrier, across, parallel) * growth(carrier, across);
+}
+
+ConvexSides sides_of(const ScreenPoint& p, const ScreenPoint& q, const ScreenPoint& r) {
+    ConvexSides sides;
+    sides.side[0] = line_through(p, q);
+    sides.side[1] = line_through(q, r);
+    sides.side[2] = line_through(r, p);
+    return sides;
 }
 
 std::optional<Stretch> inside(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
@@ -127,6 +148,20 @@ glm::ivec2 rounded_crossing_of(const PageLine& p, const PageLine& q) {
         return static_cast<int>((v + (std::int64_t{1} << (kFraction - 1))) >> kFraction);
     };
     return {round(exact.x), round(exact.y)};
+}
+
+std::int32_t rounded_depth_at_crossing(const PageLine& p, const PageLine& q, const Plane& plane) {
+    const Approximate at = approximate_crossing(p, q);
+    const double c = static_cast<double>(plane.c), gx = static_cast<double>(plane.a) / c,
+                 gy = static_cast<double>(plane.b) / c;
+    const double x = gx * (at.x - plane.at.x), y = gy * (at.y - plane.at.y);
+    const double z = plane.at.z + (x + y) + 0.5;
+    // A gradient is off by 3 * 2^-53 of itself, a term by 2 more, and the sums by 3 of all.
+    const double error = (std::abs(gx) + std::abs(gy)) * at.error * 1.0001 +
+                         16 * 0x1p-53 * (std::abs(x) + std::abs(y) + plane.at.z + 1);
+    double rounded = std::floor(z - error);
+    if (!(at.error < 0.25) || rounded != std::floor(z + error)) rounded = exact_depth(p, q, plane);
+    return static_cast<std::int32_t>(std::clamp<double>(rounded, 0, kDepthMax));
 }
 
 }  // namespace sightline

@@ -54,6 +54,10 @@ struct ConvexSides {
     [[nodiscard]] std::span<const PageLine> all() const { return {side.data(), count}; }
 };
 
+/// The sides of a triangle of the page. Precondition: side(p, q, r) > 0.
+[[nodiscard]] ConvexSides sides_of(const ScreenPoint& p, const ScreenPoint& q,
+                                   const ScreenPoint& r);
+
 enum class CarrierSide { left, right };
 
 /// The part of a stretch whose points have, infinitesimally beside them, the inside of a convex
@@ -71,5 +75,10 @@ enum class CarrierSide { left, right };
 
 /// The same, exactly rounded to the grid; half a step goes up.
 [[nodiscard]] glm::ivec2 rounded_crossing_of(const PageLine& p, const PageLine& q);
+
+/// The depth of a plane where two lines cross, exactly rounded in the same way and clamped to the
+/// depths of the page. Preconditions: they cross within the page, c > 0.
+[[nodiscard]] std::int32_t rounded_depth_at_crossing(const PageLine& p, const PageLine& q,
+                                                     const Plane& plane);
 
 }  // namespace sightline

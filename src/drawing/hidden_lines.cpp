@@ -41,8 +41,7 @@ private:
 }  // namespace
 
 int side_of_plane(const Plane& plane, Int128 depth_behind) {
-    const Int128 touching = 2 * (Int128{plane.c} + magnitude(plane.a) + magnitude(plane.b));
-    return magnitude(depth_behind) <= touching ? 0 : sign_of(depth_behind);
+    return magnitude(depth_behind) <= touching_zone(plane) ? 0 : sign_of(depth_behind);
 }
 
 int side_of_plane(const Plane& plane, const ScreenPoint& s) {

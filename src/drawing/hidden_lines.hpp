@@ -40,6 +40,11 @@ struct PageSegment {
            Int128{plane.a} * (std::int64_t{s.x} - plane.at.x) -
            Int128{plane.b} * (std::int64_t{s.y} - plane.at.y);
 }
+/// What |D| may be where a point touches the plane, as above. b + Z + 5 bits.
+[[nodiscard]] inline Int128 touching_zone(const Plane& plane) {
+    const auto magnitude = [](Int128 value) { return value < 0 ? -value : value; };
+    return 2 * (Int128{plane.c} + magnitude(plane.a) + magnitude(plane.b));
+}
 /// Its sign; 0 where the point touches the plane.
 [[nodiscard]] int side_of_plane(const Plane& plane, Int128 depth_behind);
 /// The same of a point: a filter in double precision, then integers.

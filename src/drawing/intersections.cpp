@@ -4,10 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
-#include <tuple>
 #include <utility>
 
+#include "drawing/carrier.hpp"
+#include "drawing/crossing_parts.hpp"
+#include "drawing/edge_param.hpp"
 #include "drawing/hidden_lines.hpp"
 #include "math/arena.hpp"
 
@@ -16,12 +19,70 @@ namespace {
 
 constexpr std::size_t kGrain = 256;  // parts of the search that a task takes at a time
 
-/// The corners of one triangle against the plane of another one.
+/// Which sheets are seen so nearly edge-on that all of them lies within kEdgeOnSteps on the page.
+/// Snapping then turns their planes so far that these tell little of what is where along the sheet.
+class EdgeOnSheets {
+public:
+    explicit EdgeOnSheets(const Occluders& occluders) {
+        for (std::uint32_t k = 0; k < occluders.size(); ++k)
+            if (occluders[k].sheet != kNone) add(occluders[k]);
+    }
+    [[nodiscard]] bool has(const Occluder& o) const {
+        if (o.sheet == kNone) return false;
+        const Extent& extent = extents_[o.sheet];
+        return extent.high - extent.low < kEdgeOnSteps * extent.gradient;
+    }
+
+private:
+    static constexpr double kEdgeOnSteps = 32;
+    /// Of what is seen of a sheet, along the gradient of its depth and times the gradient's length.
+    struct Extent {
+        double low = HUGE_VAL, high = -HUGE_VAL, gradient = 0;
+    };
+
+    void add(const Occluder& o) {
+        if (o.sheet >= extents_.size()) extents_.resize(o.sheet + std::size_t{1});
+        Extent& extent = extents_[o.sheet];
+        const auto a = static_cast<double>(o.plane.a), b = static_cast<double>(o.plane.b);
+        extent.gradient = std::sqrt(a * a + b * b);
+        for (const ScreenPoint* s : {&o.p, &o.q, &o.r}) {
+            extent.low = std::min(extent.low, a * s->x + b * s->y);
+            extent.high = std::max(extent.high, a * s->x + b * s->y);
+        }
+    }
+
+    std::vector<Extent> extents_;
+};
+
+/// A face with the plane that it has where it crosses others: the one that decides its depth, but
+/// the one through its own corners in a sheet that is seen edge-on.
+struct CrossingFace {
+    const Occluder& o;
+    Plane plane;
+    bool has_own_plane;
+
+    CrossingFace(const Occluder& face, const EdgeOnSheets& edge_on)
+        : o(face), plane(face.plane), has_own_plane(face.has_own_plane) {
+        if (!edge_on.has(face)) return;
+        plane = plane_through(face.p, face.q, face.r);
+        has_own_plane = true;
+    }
+};
+
+/// Whether the plane of a face is nearer (-1) or deeper (1) than that of another one at its
+/// corners. 0 where a corner touches the other plane, or where the other plane passes between a
+/// corner and the face's own plane, which is a shared one then.
 struct Sides {
     std::array<int, 3> sign{};
 
-    Sides(const Occluder& of, const Plane& plane) {
-        for (std::size_t k = 0; k < 3; ++k) sign[k] = side_of_plane(plane, of.point(k));
+    Sides(const CrossingFace& face, const Plane& other) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const ScreenPoint& s = face.o.point(k);
+            sign[k] = side_of_plane(other, s);
+            if (sign[k] != 0 && !face.has_own_plane &&
+                compare_depth(face.plane, other, s.x, s.y).sign != sign[k])
+                sign[k] = 0;
+        }
     }
     [[nodiscard]] bool some(int side) const {
         return sign[0] == side || sign[1] == side || sign[2] == side;
@@ -31,101 +92,6 @@ struct Sides {
         return (sign[0] == 0 ? 1 : 0) + (sign[1] == 0 ? 1 : 0) + (sign[2] == 0 ? 1 : 0);
     }
 };
-
-/// Where an edge meets a plane, if it does so inside of the triangle that has the plane.
-std::optional<EdgeParam> pierce(const ScreenPoint& p, const ScreenPoint& q, Int128 at_p,
-                                Int128 at_q, const Occluder& o) {
-    // The side functions of the triangle, linear along the edge, at the zero of the depth: products
-    // of 2b + 1 and 2b + Z + 2 bits, the sum of two of them.
-    static_assert(4 * kCoordBits + kDepthBits + 4 <= 127);
-    const Int128 from_p = at_p < 0 ? -at_p : at_p, from_q = at_q < 0 ? -at_q : at_q;
-    if (from_p + from_q == 0) return std::nullopt;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const ScreenPoint &from = o.point(k), &to = o.point(Occluder::next(k));
-        const std::int64_t e_p = side(from.x, from.y, to.x, to.y, p.x, p.y);
-        const std::int64_t e_q = side(from.x, from.y, to.x, to.y, q.x, q.y);
-        if (e_p * from_q + e_q * from_p < 0) return std::nullopt;
-    }
-    return EdgeParam(from_p, from_p + from_q);
-}
-
-bool inside(const Occluder& o, const ScreenPoint& s) {
-    return side(o.p.x, o.p.y, o.q.x, o.q.y, s.x, s.y) >= 0 &&
-           side(o.q.x, o.q.y, o.r.x, o.r.y, s.x, s.y) >= 0 &&
-           side(o.r.x, o.r.y, o.p.x, o.p.y, s.x, s.y) >= 0;
-}
-
-/// At most four points on a line: two where each triangle's border meets the other's plane.
-class Ends {
-public:
-    void add(const ScreenPoint& s) {
-        if (count_ < points_.size()) points_[count_++] = s;
-    }
-    /// The two that lie farthest apart; false when they do not on the page.
-    bool extremes(ScreenPoint& p, ScreenPoint& q) const {
-        std::int64_t longest = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
-            for (std::size_t j = i + 1; j < count_; ++j) {
-                const std::int64_t dx = std::int64_t{points_[j].x} - points_[i].x;
-                const std::int64_t dy = std::int64_t{points_[j].y} - points_[i].y;
-                if (dx * dx + dy * dy <= longest) continue;
-                longest = dx * dx + dy * dy;
-                p = points_[i];
-                q = points_[j];
-            }
-        }
-        return longest > 0;
-    }
-
-private:
-    std::array<ScreenPoint, 6> points_{};
-    std::size_t count_ = 0;
-};
-
-/// The points where the border of `of` meets the plane of `other`, inside of it.
-void add_ends(const Occluder& of, const Sides& sides, const Occluder& other, Ends& ends) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = Occluder::next(k);
-        if (sides.sign[k] == 0 && inside(other, of.point(k))) ends.add(of.point(k));
-        if (sides.sign[k] * sides.sign[next] >= 0) continue;
-        const bool swap = of.corners[k] > of.corners[next];
-        const std::size_t first = swap ? next : k, last = swap ? k : next;
-        const auto at =
-            pierce(of.point(first), of.point(last), depth_behind(other.plane, of.point(first)),
-                   depth_behind(other.plane, of.point(last)), other);
-        if (at) ends.add(point_at(of.point(first), of.point(last), *at));
-    }
-}
-
-/// A triangle with an edge in another one's plane: half of a crossing, when a triangle on the other
-/// side of that plane has the same edge.
-struct HalfCrossing {
-    std::uint32_t low = 0, high = 0;  ///< points at the ends of the edge
-    std::uint32_t plane = 0;          ///< the triangle whose plane it is
-    int side = 0;
-    Crossing crossing;
-
-    [[nodiscard]] auto key() const { return std::tie(low, high, plane); }
-};
-
-/// Two edges on one line, each of a triangle that lies on one side of the other one's plane: a
-/// quarter of a crossing, when both surfaces go on to the other side.
-struct EdgeMeeting {
-    std::array<std::uint32_t, 4> points{};  ///< ends of the edges: lower, higher, lower, higher
-    int first_side = 0, second_side = 0;    ///< of the triangles with the first and second edge
-    Crossing crossing;
-};
-
-struct Found {
-    std::vector<Crossing> whole;
-    std::vector<HalfCrossing> halves;
-    std::vector<EdgeMeeting> meetings;
-};
-
-bool before(const Crossing& c, const Crossing& d) {
-    return std::tie(c.faces, c.p.x, c.p.y, c.q.x, c.q.y) <
-           std::tie(d.faces, d.p.x, d.p.y, d.q.x, d.q.y);
-}
 
 /// The part of an edge that lies over a triangle.
 bool clip_edge(ScreenPoint& p, ScreenPoint& q, const Occluder& o) {
@@ -147,13 +113,29 @@ bool clip_edge(ScreenPoint& p, ScreenPoint& q, const Occluder& o) {
     return p.x != q.x || p.y != q.y;
 }
 
-/// The common part of two edges that lie on one line.
+/// Whether a point lies within kJoinedSteps of the line through two others.
+bool is_on_line(const ScreenPoint& s, const ScreenPoint& p, const ScreenPoint& q) {
+    static_assert(2 * (2 * kCoordBits + 1) <= 127);
+    const Int128 dx = std::int64_t{q.x} - p.x, dy = std::int64_t{q.y} - p.y;
+    const Int128 beside = side(p.x, p.y, q.x, q.y, s.x, s.y);
+    return beside * beside <= kJoinedSteps * kJoinedSteps * (dx * dx + dy * dy);
+}
+
+/// The common part of two edges, where they lie on one line.
 bool overlap(ScreenPoint& p, ScreenPoint& q, const ScreenPoint& r, const ScreenPoint& s) {
-    const std::int64_t dx = std::int64_t{q.x} - p.x, dy = std::int64_t{q.y} - p.y;
-    const std::int64_t length = dx * dx + dy * dy;
-    if (length == 0) return false;
+    const auto squared = [](const ScreenPoint& a, const ScreenPoint& b) {
+        const std::int64_t dx = std::int64_t{b.x} - a.x, dy = std::int64_t{b.y} - a.y;
+        return dx * dx + dy * dy;
+    };
+    const std::int64_t length = squared(p, q), other = squared(r, s);
+    if (length == 0 || other == 0) return false;
+    // The longer one says where the line is.
+    if (other > length ? !is_on_line(p, r, s) || !is_on_line(q, r, s)
+                       : !is_on_line(r, p, q) || !is_on_line(s, p, q))
+        return false;
     const auto along = [&](const ScreenPoint& at) {
-        const std::int64_t t = dx * (std::int64_t{at.x} - p.x) + dy * (std::int64_t{at.y} - p.y);
+        const std::int64_t t = (std::int64_t{q.x} - p.x) * (std::int64_t{at.x} - p.x) +
+                               (std::int64_t{q.y} - p.y) * (std::int64_t{at.y} - p.y);
         return EdgeParam(std::clamp(t, std::int64_t{0}, length), length);
     };
     const EdgeParam a = along(r), b = along(s);
@@ -165,9 +147,10 @@ bool overlap(ScreenPoint& p, ScreenPoint& q, const ScreenPoint& r, const ScreenP
 
 class CrossingFinder {
 public:
-    explicit CrossingFinder(const Occluders& occluders) : occluders_(occluders) {}
+    explicit CrossingFinder(const Occluders& occluders)
+        : occluders_(occluders), edge_on_(occluders) {}
 
-    void find(std::size_t begin, std::size_t end, VisitMarks& marks, Found& found) const {
+    void find(std::size_t begin, std::size_t end, VisitMarks& marks, CrossingParts& found) const {
         occluders_.pairs(begin, end, marks, [&](std::uint32_t i, std::uint32_t j) {
             const Occluder &o = occluders_[i], &other = occluders_[j];
             if (o.id < other.id) test(o, other, found);
@@ -204,108 +187,104 @@ private:
         return beyond(corner, o.point(after)) || beyond(o.point(before), corner);
     }
 
-    static void test(const Occluder& o, const Occluder& other, Found& found) {
+    void test(const Occluder& o, const Occluder& other, CrossingParts& found) const {
         if (o.sheet != kNone && o.sheet == other.sheet) return;
         const Shared shared(o, other);
         if (shared.count > 1) return;
         if (shared.count == 1 && (is_outside(o, shared.own, other, shared.theirs) ||
                                   is_outside(other, shared.theirs, o, shared.own)))
             return;
-        const Sides own(o, other.plane);
+        const CrossingFace f(o, edge_on_), g(other, edge_on_);
+        const Sides own(f, g.plane);
         if (!own.crossing() && own.zeros() != 2) return;
-        const Sides theirs(other, o.plane);
-        if (own.crossing() && theirs.crossing()) add_whole(o, own, other, theirs, found);
+        const Sides theirs(g, f.plane);
+        if (own.crossing() && theirs.crossing()) add_piece(f, own, g, theirs, found);
         if (own.zeros() == 2 && theirs.crossing()) add_half(o, own, other, found);
         if (theirs.zeros() == 2 && own.crossing()) add_half(other, theirs, o, found);
         if (own.zeros() == 2 && theirs.zeros() == 2) add_meeting(o, own, other, theirs, found);
     }
 
-    static void add_whole(const Occluder& o, const Sides& own, const Occluder& other,
-                          const Sides& theirs, Found& found) {
-        Ends ends;
-        add_ends(o, own, other, ends);
-        add_ends(other, theirs, o, ends);
-        Crossing crossing;
-        crossing.faces = {o.id, other.id};
-        if (ends.extremes(crossing.p, crossing.q)) found.whole.push_back(crossing);
+    /// Where a piece ends that meets side k of a face there: at a corner that touches the other
+    /// face, if there is one near.
+    static ScreenPoint piece_end(const Occluder& o, const Sides& sides, std::size_t k,
+                                 const ScreenPoint& exact) {
+        for (const std::size_t i : {k, Occluder::next(k)}) {
+            const ScreenPoint& corner = o.point(i);
+            if (sides.sign[i] == 0 && std::abs(corner.x - exact.x) <= kJoinedSteps &&
+                std::abs(corner.y - exact.y) <= kJoinedSteps)
+                return corner;
+        }
+        return exact;
     }
 
-    /// The corner that is not in the plane, and the two that are, the one with the lower number
-    /// first.
+    /// The stretch in which the planes have one depth and that lies inside of both triangles.
+    static void add_piece(const CrossingFace& f, const Sides& own, const CrossingFace& g,
+                          const Sides& theirs, CrossingParts& found) {
+        const PageLine line = line_where_deeper(f.plane, g.plane);
+        const ConvexSides f_sides = sides_of(f.o.p, f.o.q, f.o.r);
+        const ConvexSides g_sides = sides_of(g.o.p, g.o.q, g.o.r);
+        std::optional<Stretch> stretch = chord(line, std::span(f_sides.side).first<3>());
+        if (stretch) stretch = inside(line, CarrierSide::right, *stretch, g_sides);
+        if (!stretch) return;
+        CrossingPiece piece;
+        piece.crossing.faces = {f.o.id, g.o.id};
+        const auto end = [&](const Place& place, ScreenPoint& point) {
+            std::size_t k = 0;
+            while (k < 3 && place.line != &f_sides.side[k]) ++k;
+            const bool on_f = k < 3;
+            if (!on_f)
+                for (k = 0; place.line != &g_sides.side[k];) ++k;
+            const Occluder &o = on_f ? f.o : g.o, &other = on_f ? g.o : f.o;
+            const glm::ivec2 at = rounded_crossing_of(line, *place.line);
+            const std::int32_t z = rounded_depth_at_crossing(line, *place.line, f.plane);
+            point = piece_end(o, on_f ? own : theirs, k, {at.x, at.y, z});
+            return CrossingPiece::End{{o.point(k), o.point(Occluder::next(k))}, other.id};
+        };
+        piece.ends = {end(stretch->from, piece.crossing.p), end(stretch->to, piece.crossing.q)};
+        found.pieces.push_back(piece);
+    }
+
+    /// The corner that is not in the plane, and the edge that is, from its lower to its higher end.
     struct ZeroEdge {
-        std::size_t off, a, b;
-    };
-    static ZeroEdge zero_edge(const Occluder& o, const Sides& sides) {
-        const std::size_t off = sides.sign[0] != 0 ? 0 : sides.sign[1] != 0 ? 1 : 2;
-        ZeroEdge edge{off, (off + 1) % 3, (off + 2) % 3};
-        if (o.corners[edge.a] > o.corners[edge.b]) std::swap(edge.a, edge.b);
-        return edge;
-    }
+        int off_side;
+        PageSide edge;
 
-    static void add_half(const Occluder& o, const Sides& own, const Occluder& other, Found& found) {
-        const ZeroEdge e = zero_edge(o, own);
-        HalfCrossing half{o.corners[e.a], o.corners[e.b], other.id, own.sign[e.off], {}};
+        ZeroEdge(const Occluder& o, const Sides& sides) {
+            const std::size_t off = sides.sign[0] != 0 ? 0 : sides.sign[1] != 0 ? 1 : 2;
+            off_side = sides.sign[off];
+            edge = {o.point(Occluder::next(off)), o.point(Occluder::next(Occluder::next(off)))};
+        }
+    };
+
+    static void add_half(const Occluder& o, const Sides& own, const Occluder& other,
+                         CrossingParts& found) {
+        const ZeroEdge e(o, own);
+        HalfCrossing half{e.edge, other.id, e.off_side, {}};
         half.crossing = {
-            o.point(e.a), o.point(e.b), {std::min(o.id, other.id), std::max(o.id, other.id)}};
+            e.edge.low, e.edge.high, {std::min(o.id, other.id), std::max(o.id, other.id)}};
         if (clip_edge(half.crossing.p, half.crossing.q, other)) found.halves.push_back(half);
     }
 
     static void add_meeting(const Occluder& o, const Sides& own, const Occluder& other,
-                            const Sides& theirs, Found& found) {
-        const ZeroEdge e = zero_edge(o, own), f = zero_edge(other, theirs);
-        EdgeMeeting meeting;
-        meeting.points = {o.corners[e.a], o.corners[e.b], other.corners[f.a], other.corners[f.b]};
-        meeting.first_side = own.sign[e.off];
-        meeting.second_side = theirs.sign[f.off];
+                            const Sides& theirs, CrossingParts& found) {
+        ZeroEdge e(o, own), f(other, theirs);
+        if (f.edge < e.edge) std::swap(e, f);
+        EdgeMeeting meeting{e.edge, f.edge, e.off_side, f.off_side, {}};
         meeting.crossing = {
-            o.point(e.a), o.point(e.b), {std::min(o.id, other.id), std::max(o.id, other.id)}};
-        if (meeting.points[0] > meeting.points[2]) {
-            std::swap(meeting.points[0], meeting.points[2]);
-            std::swap(meeting.points[1], meeting.points[3]);
-            std::swap(meeting.first_side, meeting.second_side);
-        }
-        if (overlap(meeting.crossing.p, meeting.crossing.q, other.point(f.a), other.point(f.b)))
+            e.edge.low, e.edge.high, {std::min(o.id, other.id), std::max(o.id, other.id)}};
+        if (overlap(meeting.crossing.p, meeting.crossing.q, f.edge.low, f.edge.high))
             found.meetings.push_back(meeting);
     }
 
     const Occluders& occluders_;
+    EdgeOnSheets edge_on_;
 };
-
-/// Adds the halves that have a counterpart on the other side.
-void join_halves(std::vector<HalfCrossing>& halves, std::vector<Crossing>& all) {
-    std::ranges::sort(halves, [](const HalfCrossing& e, const HalfCrossing& f) {
-        return e.key() != f.key() ? e.key() < f.key() : before(e.crossing, f.crossing);
-    });
-    for (std::size_t i = 0, end = 0; i < halves.size(); i = end) {
-        bool nearer = false, deeper = false;
-        for (; end < halves.size() && halves[end].key() == halves[i].key(); ++end) {
-            nearer = nearer || halves[end].side < 0;
-            deeper = deeper || halves[end].side > 0;
-        }
-        if (nearer && deeper) all.push_back(halves[i].crossing);
-    }
-}
-
-/// Adds the meetings of edges whose faces lie on both sides of each other.
-void join_meetings(std::vector<EdgeMeeting>& meetings, std::vector<Crossing>& all) {
-    std::ranges::sort(meetings, [](const EdgeMeeting& e, const EdgeMeeting& f) {
-        return e.points != f.points ? e.points < f.points : before(e.crossing, f.crossing);
-    });
-    for (std::size_t i = 0, end = 0; i < meetings.size(); i = end) {
-        bool first[2] = {}, second[2] = {};
-        for (; end < meetings.size() && meetings[end].points == meetings[i].points; ++end) {
-            first[meetings[end].first_side > 0 ? 1 : 0] = true;
-            second[meetings[end].second_side > 0 ? 1 : 0] = true;
-        }
-        if (first[0] && first[1] && second[0] && second[1]) all.push_back(meetings[i].crossing);
-    }
-}
 
 }  // namespace
 
 std::vector<Crossing> find_crossings(const Occluders& occluders, int threads, WorkMeter& meter) {
     const std::size_t parts = occluders.part_count(), count = (parts + kGrain - 1) / kGrain;
-    std::vector<Found> tasks(count);
+    std::vector<CrossingParts> tasks(count);
     const CrossingFinder finder(occluders);
     tbb::enumerable_thread_specific<VisitMarks> thread_marks;
     in_arena(threads, [&] {
@@ -316,18 +295,9 @@ std::vector<Crossing> find_crossings(const Occluders& occluders, int threads, Wo
                         tasks[task]);
         });
     });
-    std::vector<Crossing> all;
-    std::vector<HalfCrossing> halves;
-    std::vector<EdgeMeeting> meetings;
-    for (const Found& task : tasks) {
-        all.insert(all.end(), task.whole.begin(), task.whole.end());
-        halves.insert(halves.end(), task.halves.begin(), task.halves.end());
-        meetings.insert(meetings.end(), task.meetings.begin(), task.meetings.end());
-    }
-    std::ranges::sort(all, before);  // whatever the order of the search
-    join_halves(halves, all);
-    join_meetings(meetings, all);
-    return all;
+    CrossingParts found;
+    for (const CrossingParts& task : tasks) found.append(task);
+    return join(found);
 }
 
 }  // namespace sightline

@@ -32,6 +32,7 @@ Occluder make_occluder(const ScreenScene& page, std::uint32_t k) {
     o.id = page.id(k);
     o.sheet = page.shared_plane(o.id);
     o.plane = page.plane(o.id);
+    o.has_own_plane = o.sheet == kNone && k == o.id;  // a piece has that of the whole triangle
     o.near = std::min({o.p.z, o.q.z, o.r.z});
     o.far = std::max({o.p.z, o.q.z, o.r.z});
     if (o.sheet == kNone || o.plane.c == 0) return o;

@@ -20,6 +20,7 @@ struct Occluder {
     std::uint32_t id = kNone;                ///< of the triangle in the scene
     std::uint32_t sheet = kNone;             ///< whose plane it has, if any
     bool turned = false;                     ///< its corners run the other way in the scene
+    bool has_own_plane = false;              ///< one that passes exactly through its corners
     std::int32_t near = 0, far = 0;          ///< z of its corners, and of its plane there
     Plane plane;                             ///< c > 0
 

@@ -55,13 +55,6 @@ InFront in_front(const Occluder& g, const Occluder& f) {
     return at_f.behind && at_g.behind ? InFront::partly : InFront::everywhere;
 }
 
-ConvexSides sides_of(const Occluder& o) {
-    ConvexSides sides;
-    for (std::size_t k = 0; k < 3; ++k)
-        sides.side[k] = line_through(o.point(k), o.point(next_of(k)));
-    return sides;
-}
-
 /// Side k of a triangle as a stretch of its own line.
 Stretch stretch_of(const Occluder& o, const ConvexSides& sides, std::size_t k) {
     // Inside all sides are positive: the one before grows where this one begins, the next falls.
@@ -109,7 +102,7 @@ void RegionFinder::collect_hiders(const Occluder& face) {
         if (separates(face, other) || separates(other, face)) continue;
         const InFront where = in_front(other, face);
         if (where == InFront::nowhere) continue;
-        Hider hider{k, where == InFront::everywhere, sides_of(other), bounds_over(other, face)};
+        Hider hider{k, where == InFront::everywhere, sides_of(other.p, other.q, other.r), bounds_over(other, face)};
         if (!hider.whole) {
             hider.sides.side[3] = line_where_deeper(face.plane, other.plane);
             hider.sides.count = 4;
@@ -304,7 +297,7 @@ FaceFate RegionFinder::find(std::uint32_t k, std::vector<BorderPiece>& border) {
     const Occluder& face = occluders_[k];
     face_ = &face;
     collect_hiders(face);
-    own_ = sides_of(face);
+    own_ = sides_of(face.p, face.q, face.r);
     const std::size_t before = border.size();
     if (hiders_.empty()) {
         for (std::size_t s = 0; s < 3; ++s)
