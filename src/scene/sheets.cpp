@@ -59,11 +59,7 @@ public:
     explicit SheetBuilder(Scene& scene) : scene_(scene) {
         centre_ = scene.bounds.centre();
         radius_ = 0.5 * glm::length(scene.bounds.extent());
-        double largest = 0;
-        for (int k = 0; k < 3; ++k)
-            largest =
-                std::max({largest, std::abs(scene.bounds.lo[k]), std::abs(scene.bounds.hi[k])});
-        tolerance_ = std::max(kToleranceOfSize * radius_, kToleranceOfCoordinate * largest);
+        tolerance_ = coplanar_tolerance(scene.bounds);
     }
 
     void run() {
@@ -368,6 +364,14 @@ private:
 };
 
 }  // namespace
+
+double coplanar_tolerance(const Box& bounds) {
+    const double radius = 0.5 * glm::length(bounds.extent());
+    double largest = 0;
+    for (int k = 0; k < 3; ++k)
+        largest = std::max({largest, std::abs(bounds.lo[k]), std::abs(bounds.hi[k])});
+    return std::max(kToleranceOfSize * radius, kToleranceOfCoordinate * largest);
+}
 
 void build_sheets(Scene& scene) { SheetBuilder(scene).run(); }
 

@@ -16,6 +16,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "scene/sheets.hpp"
+
 namespace sightline {
 namespace {
 
@@ -34,10 +36,86 @@ glm::dvec3 camera_space(const Camera& camera, glm::dvec3 point) {
             -glm::dot(v, camera.back)};
 }
 
-/// The face's normal, turned to the side from which it is seen.
-glm::dvec3 facing_normal(const Camera& camera, const std::array<glm::dvec3, 3>& p) {
+using Triangle = std::array<glm::dvec3, 3>;
+
+Triangle corners_of(const Scene& scene, const Corners& c) {
+    return {scene.positions[c.x], scene.positions[c.y], scene.positions[c.z]};
+}
+
+/// Twice the area, along the normal.
+glm::dvec3 area_vector(const Triangle& p) { return glm::cross(p[1] - p[0], p[2] - p[0]); }
+
+/// The triangles of a source polygon: they stand together, in ascending order of polygons.
+struct PolygonRange {
+    std::uint32_t first, last;
+};
+
+PolygonRange polygon_of(const Scene& scene, std::uint32_t id) {
+    constexpr std::uint32_t kSteps = 16;  // further ones are looked up in O(log n)
+    const auto& polygons = scene.triangle_polygon;
+    if (id >= polygons.size()) return {id, id};
+    const auto shares = [&](std::uint32_t t) { return polygons[t] == polygons[id]; };
+    PolygonRange range{id, id};
+    const std::uint32_t lowest = id < kSteps ? 0 : id - kSteps;
+    const auto highest =
+        static_cast<std::uint32_t>(std::min(polygons.size() - 1, std::size_t{id} + kSteps));
+    while (range.first > lowest && shares(range.first - 1)) --range.first;
+    while (range.last < highest && shares(range.last + 1)) ++range.last;
+    if (id - range.first == kSteps || range.last - id == kSteps) {
+        const auto all = std::equal_range(polygons.begin(), polygons.end(), polygons[id]);
+        range = {static_cast<std::uint32_t>(all.first - polygons.begin()),
+                 static_cast<std::uint32_t>(all.second - polygons.begin()) - 1};
+    }
+    return range;
+}
+
+/// The largest of (at most 32 of) the triangles of a polygon, whose plane is known best.
+std::uint32_t largest_of(const Scene& scene, const PolygonRange& range) {
+    if (range.first == range.last) return range.first;
+    const std::uint32_t step = (range.last - range.first) / 32 + 1;
+    std::uint32_t largest = range.first;
+    double most = -1;
+    for (std::uint64_t t = range.first; t <= range.last; t += step) {
+        const glm::dvec3 n = area_vector(corners_of(scene, scene.triangles[t]));
+        const double area = glm::dot(n, n);
+        if (!(area > most)) continue;
+        most = area;
+        largest = static_cast<std::uint32_t>(t);
+    }
+    return largest;
+}
+
+/// Whether corners lie in the plane of other ones, up to the precision of coordinates.
+bool lies_in(const Scene& scene, const Triangle& corners, const Triangle& plane) {
+    const glm::dvec3 n = unit_or(area_vector(plane), {0, 0, 0});
+    const double tolerance = coplanar_tolerance(scene.bounds);
+    return std::ranges::all_of(corners, [&](const glm::dvec3& p) {
+        return std::abs(glm::dot(n, p - plane[0])) <= tolerance;
+    });
+}
+
+/// Three points of the plane of a face: the same ones for all triangles of a flat polygon (thin
+/// ones can be too uncertain for its sheet), and for all faces of a sheet, so that they are lit
+/// alike.
+Triangle plane_of(const Scene& scene, std::uint32_t id) {
+    const auto of_sheet = [&](std::uint32_t t) {
+        const std::uint32_t sheet = scene.sheets.of(t);
+        return corners_of(scene, sheet == kNone ? scene.triangles[t] : scene.sheets.frame[sheet]);
+    };
+    const PolygonRange polygon = polygon_of(scene, id);
+    const std::uint32_t largest = largest_of(scene, polygon);
+    if (largest == id ||
+        (scene.sheets.of(id) != kNone && scene.sheets.of(largest) == scene.sheets.of(id))) {
+        return of_sheet(id);
+    }
+    const Triangle plane = of_sheet(largest);
+    return lies_in(scene, corners_of(scene, scene.triangles[id]), plane) ? plane : of_sheet(id);
+}
+
+/// The normal of a plane, turned to the side from which it is seen.
+glm::dvec3 facing_normal(const Camera& camera, const Triangle& p) {
     const glm::dvec3 view = camera.view_vector(p[0]);
-    const glm::dvec3 n = unit_or(glm::cross(p[1] - p[0], p[2] - p[0]), -unit_or(view, {0, 0, -1}));
+    const glm::dvec3 n = unit_or(area_vector(p), -unit_or(view, {0, 0, -1}));
     return glm::dot(n, view) > 0 ? -n : n;
 }
 
@@ -92,10 +170,8 @@ glm::dvec3 BarycentricMap::at(glm::dvec2 pixel) const {
 Surface make_surface(const ScreenScene& screen, std::uint32_t id) {
     const Scene& scene = screen.scene();
     Surface surface;
-    for (int k = 0; k < 3; ++k) {
-        surface.corners[static_cast<std::size_t>(k)] = scene.positions[scene.triangles[id][k]];
-    }
-    surface.normal = facing_normal(screen.camera(), surface.corners);
+    surface.corners = corners_of(scene, scene.triangles[id]);
+    surface.normal = facing_normal(screen.camera(), plane_of(scene, id));
     surface.material = &material_of(scene, id);
     surface.smooth = !scene.triangle_normals.empty() && scene.triangle_normals[id].x != kNone;
     surface.colored = !scene.triangle_colors.empty() && scene.triangle_colors[id].x != kNone;
@@ -119,21 +195,9 @@ void add_attributes(const ScreenScene& screen, std::uint32_t id, Surface& surfac
 }
 
 glm::dvec3 polygon_point(const Scene& scene, std::uint32_t id) {
-    std::uint32_t first = id, last = id;
-    const auto& polygons = scene.triangle_polygon;
-    const auto shares = [&](std::uint32_t other) {
-        return other < polygons.size() && polygons[other] == polygons[id];
-    };
-    if (shares(id + 1) || (id > 0 && shares(id - 1))) {
-        // A polygon's triangles stand together, in ascending order of polygons.
-        const auto range = std::equal_range(polygons.begin(), polygons.end(), polygons[id]);
-        if (range.first < range.second) {
-            first = static_cast<std::uint32_t>(range.first - polygons.begin());
-            last = static_cast<std::uint32_t>(range.second - polygons.begin()) - 1;
-        }
-    }
+    const PolygonRange polygon = polygon_of(scene, id);
     glm::dvec3 sum{0, 0, 0};
-    for (const std::uint32_t t : {first, last}) {
+    for (const std::uint32_t t : {polygon.first, polygon.last}) {
         for (int k = 0; k < 3; ++k) sum += scene.positions[scene.triangles[t][k]];
     }
     return sum / 6.0;

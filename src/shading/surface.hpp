@@ -35,7 +35,8 @@ private:
 /// One triangle of the scene as a surface.
 struct Surface {
     std::array<glm::dvec3, 3> corners;
-    glm::dvec3 normal;                   ///< of the face: unit, towards the viewer
+    /// Of the face's plane, which its sheet or flat polygon shares: unit, towards the viewer.
+    glm::dvec3 normal;
     const Material* material = nullptr;  ///< never null; the default one where none is named
     bool smooth = false;                 ///< the scene has normals for this triangle
     bool colored = false;                ///< the scene has vertex colours for this triangle

@@ -229,7 +229,7 @@ Status SceneBuilder::append_polygon(const Instance& instance, const Polygon& pol
         if (Status placed = place_vertex(instance, v, joiner); !placed) return placed;
     }
     if (polygon.size == 3) {
-        append_triangle(instance, polygon, {0, 1, 2});
+        append_triangle(instance, polygon, {0, 1, 2}, 0b111);
         return success();
     }
     polygon_positions_.clear();
@@ -245,7 +245,10 @@ Status SceneBuilder::append_polygon(const Instance& instance, const Polygon& pol
                         instance.placement.file, instance.name, polygon.size)};
     }
     if (shape == Triangulator::Shape::concave) ++scene_.counts.concave_polygons;
-    for (const PolygonTriangle& triangle : triangles_) append_triangle(instance, polygon, triangle);
+    find_polygon_edges(polygon_positions_, triangles_, edge_bits_);
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+        append_triangle(instance, polygon, triangles_[i], edge_bits_[i]);
+    }
     return success();
 }
 
@@ -296,7 +299,7 @@ std::uint32_t SceneBuilder::place_color(const Instance& instance, std::uint32_t 
 }
 
 void SceneBuilder::append_triangle(const Instance& instance, const Polygon& polygon,
-                                   const PolygonTriangle& triangle) {
+                                   const PolygonTriangle& triangle, std::uint8_t edge_bits) {
     const SoupMesh& mesh = instance.mesh;
     std::array<std::size_t, 3> corner;  // in the mesh
     for (std::size_t k = 0; k < 3; ++k) corner[k] = instance.corner(polygon, triangle[k]);
@@ -304,7 +307,7 @@ void SceneBuilder::append_triangle(const Instance& instance, const Polygon& poly
     scene_.triangles.emplace_back(placed_positions_[vertex(0)], placed_positions_[vertex(1)],
                                   placed_positions_[vertex(2)]);
     scene_.triangle_polygon.push_back(polygons_);
-    scene_.polygon_edges.push_back(polygon_edge_bits(triangle, polygon.size));
+    scene_.polygon_edges.push_back(edge_bits);
     if (!mesh.normals.empty()) {
         const auto& of_corner = mesh.normal_corners.empty() ? mesh.corners : mesh.normal_corners;
         Corners normals{};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/joined_mesh.hpp"
+#include "scene/load/polygon_edges.hpp"
 #include "scene/load/soup.hpp"
 #include "scene/load/triangulate.hpp"
 #include "sightline/error.hpp"
@@ -72,7 +73,7 @@ private:
     [[nodiscard]] std::uint32_t place_normal(const Instance& instance, std::uint32_t normal);
     [[nodiscard]] std::uint32_t place_color(const Instance& instance, std::uint32_t vertex);
     void append_triangle(const Instance& instance, const Polygon& polygon,
-                         const PolygonTriangle& triangle);
+                         const PolygonTriangle& triangle, std::uint8_t edge_bits);
     void fill_attributes(const SoupMesh& mesh);
 
     Scene scene_;
@@ -85,6 +86,7 @@ private:
     // Scratch.
     std::vector<glm::dvec3> polygon_positions_;
     std::vector<PolygonTriangle> triangles_;
+    std::vector<std::uint8_t> edge_bits_;
 };
 
 }  // namespace sightline::load

@@ -3,9 +3,19 @@
 // two corners beside it, so a queue of candidates suffices.
 //
 // How this differs: every second corner is tried first, which avoids slivers; what may block an ear
-// is looked up in a grid, or in the list of reflex corners where that is shorter; and files hold
-// polygons that touch or cross themselves, so when no proper ear is left the conditions are relaxed
-// step by step (see Strictness) until one is found. The number of triangles never changes.
+// is looked up in a grid, or in the list of reflex corners where that is shorter. And files hold
+// polygons that touch or cross themselves:
+//
+// - Where the outline turns back on itself, the triangle at the tip has no area. It is cut off at
+//   once, so spikes are eaten from their tips, and bridges as soon as what they lead to is gone: a
+//   triangle without area takes nothing from the polygon, while the corners at the foot of a spike
+//   look like ears that they are not.
+// - Where two corners coincide, an ear is doubtful whose sides both run along those of the other
+//   corner: what lies between them is inside for a bridge to a hole, and outside for a bridge
+//   between two parts. It waits until such a bridge has become a spike.
+// - When no proper ear is left, corners on a straight line are cut off, and then the conditions are
+//   relaxed step by step (see Strictness) until an ear is found. The number of triangles never
+//   changes.
 #include "scene/load/ear_cutter.hpp"
 
 #include <algorithm>
@@ -18,6 +28,9 @@ namespace {
 
 /// Below this many corners a list of the reflex ones is quicker than a grid.
 constexpr std::size_t kGridFrom = 64;
+/// The outline turns back where its sides differ by less than this angle. Turning a polygon in
+/// space moves corners by 2^-53 of their coordinates; this holds for sides down to 2^-12 of those.
+constexpr double kBackAngle = 0x1p-40;
 
 std::uint32_t cell_index(double offset, double cell, std::uint32_t cells) {
     const double index = offset / cell;
@@ -69,20 +82,23 @@ std::span<const std::uint32_t> CornerGrid::corners_in(std::uint32_t x, std::uint
     return std::span(corners_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
 }
 
-bool EarCutter::cut(std::span<const glm::dvec2> points, std::vector<PolygonTriangle>& triangles) {
+bool EarCutter::cut(std::span<const glm::dvec2> points, double same_angle, std::uint64_t most,
+                    std::vector<PolygonTriangle>& triangles) {
+    same_angle_ = same_angle;
+    limit_ = work_ + most;
     start(points);
-    while (left_ > 3 && work_ <= kWorkLimit) {
-        if (queue_.empty()) {
+    while (left_ > 3 && work_ <= limit_) {
+        if (const auto tip = next_of(backs_)) {
+            cut_off(*tip, triangles);
+        } else if (const auto corner = next_of(queue_)) {
+            if (is_ear(*corner, Strictness::proper)) cut_off(*corner, triangles);
+        } else if (const auto flat = next_of(flats_)) {
+            cut_off(*flat, triangles);
+        } else {
             cut_off(relaxed_ear(), triangles);
-            continue;
         }
-        const Candidate candidate = queue_.front();
-        queue_.pop_front();
-        const Corner& corner = corners_[candidate.corner];
-        if (!corner.alive || corner.stamp != candidate.stamp) continue;
-        if (is_ear(candidate.corner, Strictness::proper)) cut_off(candidate.corner, triangles);
     }
-    if (work_ > kWorkLimit) return false;
+    if (work_ > limit_) return false;
     const Corner& last = corners_[start_];
     triangles.push_back({start_, last.next, last.prev});
     return true;
@@ -96,6 +112,8 @@ void EarCutter::start(std::span<const glm::dvec2> points) {
     if (has_grid_) grid_.build(points);
     corners_.assign(left_, {});
     queue_.clear();
+    backs_.clear();
+    flats_.clear();
     reflex_.clear();
     for (std::uint32_t i = 0; i < left_; ++i) {
         corners_[i].prev = i == 0 ? left_ - 1 : i - 1;
@@ -104,19 +122,36 @@ void EarCutter::start(std::span<const glm::dvec2> points) {
     for (std::uint32_t i = 0; i < left_; ++i) touch(i);
 }
 
-/// A corner has new neighbours: puts it at the end of the queue.
+/// A corner has new neighbours: puts it at the end of the queue to which it belongs.
 void EarCutter::touch(std::uint32_t corner) {
     Corner& c = corners_[corner];
     const glm::dvec2 &before = points_[c.prev], &here = points_[corner], &after = points_[c.next];
     const double area = turn(before, here, after);
+    const bool back = same_way(here, before, after);
     // A corner in the middle of a straight line never blocks alone: the ends of the line do. One
     // that coincides with a neighbour, or where the outline turns back, does.
-    c.reflex = area < 0 || (area == 0 && !(glm::dot(here - before, after - here) > 0));
+    c.reflex = area < 0 || back;
     if (c.reflex && !c.listed) {
         c.listed = true;
         reflex_.push_back(corner);
     }
-    queue_.push_back({corner, ++c.stamp});
+    (back ? backs_ : area == 0 ? flats_ : queue_).push_back({corner, ++c.stamp});
+}
+
+/// Whether two points lie in one direction from a third one, or one of them coincides with it.
+bool EarCutter::same_way(const glm::dvec2& from, const glm::dvec2& p, const glm::dvec2& q) const {
+    return std::abs(turn(from, p, q)) <= same_angle_ * glm::dot(p - from, q - from);
+}
+
+/// Takes a corner from a queue, the first one that is left with the neighbours it had.
+std::optional<std::uint32_t> EarCutter::next_of(std::deque<Candidate>& queue) {
+    while (!queue.empty()) {
+        const Candidate candidate = queue.front();
+        queue.pop_front();
+        const Corner& corner = corners_[candidate.corner];
+        if (corner.alive && corner.stamp == candidate.stamp) return candidate.corner;
+    }
+    return std::nullopt;
 }
 
 void EarCutter::cut_off(std::uint32_t corner, std::vector<PolygonTriangle>& triangles) {
@@ -135,8 +170,9 @@ void EarCutter::cut_off(std::uint32_t corner, std::vector<PolygonTriangle>& tria
 std::uint32_t EarCutter::relaxed_ear() {
     for (const Strictness strictness : {Strictness::touching, Strictness::convex}) {
         std::uint32_t corner = start_;
-        for (std::uint32_t i = 0; i < left_; ++i, corner = corners_[corner].next) {
+        for (std::uint32_t i = 0; i < left_ && work_ <= limit_; ++i) {
             if (is_ear(corner, strictness)) return corner;
+            corner = corners_[corner].next;
         }
     }
     return start_;
@@ -150,7 +186,7 @@ bool EarCutter::is_ear(std::uint32_t corner, Strictness strictness) {
         case Strictness::proper:
             return area > 0 && !blocked(corner, strictness);
         case Strictness::touching:
-            return area == 0 || (area > 0 && !blocked(corner, strictness));
+            return area > 0 && !blocked(corner, strictness);
         case Strictness::convex:
             return area > 0;
     }
@@ -211,7 +247,10 @@ bool EarCutter::blocks(std::uint32_t other, std::uint32_t corner, Strictness str
         }
         return true;
     };
-    return leads_inside(points_[o.prev]) || leads_inside(points_[o.next]);
+    if (leads_inside(points_[o.prev]) || leads_inside(points_[o.next])) return true;
+    // Both of its sides along those of the ear, the other way round.
+    return side[0] == 0 && side[1] == 0 && same_way(ear[1], points_[o.prev], ear[2]) &&
+           same_way(ear[1], points_[o.next], ear[0]);
 }
 
 }  // namespace sightline::load

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,23 +46,24 @@ private:
 /// Cuts the ears of one polygon after another, with the same scratch memory.
 class EarCutter {
 public:
-    /// Steps for all polygons together, some ten seconds: only a file made for it needs more.
-    static constexpr std::uint64_t kWorkLimit = std::uint64_t{1} << 32;
-
-    /// Appends the n - 2 triangles of a counter-clockwise polygon of n > 3 corners; false when the
-    /// work limit is reached.
-    bool cut(std::span<const glm::dvec2> points, std::vector<PolygonTriangle>& triangles);
+    /// Appends the n - 2 triangles of a counter-clockwise polygon of n > 3 corners; false when that
+    /// takes more than `most` steps. Sides that differ by less than `same_angle` count as one on
+    /// the other.
+    bool cut(std::span<const glm::dvec2> points, double same_angle, std::uint64_t most,
+             std::vector<PolygonTriangle>& triangles);
+    /// Steps so far, of all polygons.
+    [[nodiscard]] std::uint64_t work() const { return work_; }
 
 private:
     /// What makes a corner an ear, from a proper one to the least that is asked.
     enum class Strictness {
         proper,    ///< positive area, and no corner inside, on the diagonal, or leading inside
-        touching,  ///< no area, or positive area and no corner strictly inside
+        touching,  ///< positive area, and no corner strictly inside
         convex,    ///< positive area
     };
     struct Corner {
         std::uint32_t prev, next;
-        std::uint32_t stamp = 0;  ///< counts its entries in the queue; only the last one is valid
+        std::uint32_t stamp = 0;  ///< counts its entries in the queues; only the last one is valid
         bool reflex = false;      ///< turns right or back: only such corners can block an ear
         bool listed = false;      ///< stands in reflex_
         bool alive = true;
@@ -73,6 +75,9 @@ private:
     void start(std::span<const glm::dvec2> points);
     void touch(std::uint32_t corner);
     void cut_off(std::uint32_t corner, std::vector<PolygonTriangle>& triangles);
+    std::optional<std::uint32_t> next_of(std::deque<Candidate>& queue);
+    [[nodiscard]] bool same_way(const glm::dvec2& from, const glm::dvec2& p,
+                                const glm::dvec2& q) const;
     [[nodiscard]] std::uint32_t relaxed_ear();
     [[nodiscard]] bool is_ear(std::uint32_t corner, Strictness strictness);
     [[nodiscard]] bool blocked(std::uint32_t corner, Strictness strictness);
@@ -82,13 +87,17 @@ private:
 
     std::span<const glm::dvec2> points_;
     std::vector<Corner> corners_;
-    std::deque<Candidate> queue_;
+    std::deque<Candidate> queue_;        ///< what may be a proper ear
+    std::deque<Candidate> flats_;        ///< corners on a straight line: only when that has none
+    std::deque<Candidate> backs_;        ///< where the outline turns back: to be cut off at once
     std::vector<std::uint32_t> reflex_;  ///< all reflex corners, and some that no longer are
     CornerGrid grid_;
     bool has_grid_ = false;
+    double same_angle_ = 0;
     std::uint32_t left_ = 0;   ///< corners not cut off yet
     std::uint32_t start_ = 0;  ///< one of them
     std::uint64_t work_ = 0;   ///< steps so far, of all polygons
+    std::uint64_t limit_ = 0;  ///< of work_
 };
 
 }  // namespace sightline::load

@@ -1,4 +1,5 @@
-// Decides between a fan and ears, in the plane of the polygon's Newell normal.
+// Decides between a fan, ears and, where ears leave triangles turned over, the least area, in the
+// plane of the polygon's Newell normal.
 #include "scene/load/triangulate.hpp"
 
 #include <algorithm>
@@ -51,15 +52,36 @@ void make_fan(std::uint32_t n, std::vector<PolygonTriangle>& triangles) {
     for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
 }
 
+/// Angles below which an outline that turns back runs along itself. The first allows for a polygon
+/// that was turned in space: that moves corners by 2^-53 of their coordinates, so it holds for
+/// sides down to 2^-12 of those. The second allows for coordinates of six digits.
+constexpr double kSameAngle = 0x1p-40, kLooseAngle = 0x1p-14;
+
+/// Which part of their area triangles that are turned over have; 0 where rounding explains it. What
+/// a polygon covers once is covered once by its triangles if and only if none is turned over: at
+/// any point, the triangles that run counter-clockwise less those that run clockwise are as many as
+/// the polygon winds around it.
+double turned_over(std::span<const glm::dvec2> p, const std::vector<PolygonTriangle>& triangles) {
+    constexpr double kRounding = 0x1p-30;
+    double over = 0, all = 0;
+    for (const PolygonTriangle& t : triangles) {
+        const double area = turn(p[t[0]], p[t[1]], p[t[2]]);
+        all += std::abs(area);
+        if (area < 0) over -= area;
+    }
+    return over > kRounding * all ? over / all : 0;
+}
+
 }  // namespace
 
-std::uint8_t polygon_edge_bits(const PolygonTriangle& triangle, std::uint32_t n) {
-    unsigned bits = 0;
-    for (unsigned k = 0; k < 3; ++k) {
-        const std::uint32_t from = triangle[k], to = triangle[(k + 1) % 3];
-        if ((from + 1 == n ? 0 : from + 1) == to) bits |= 1u << k;
-    }
-    return static_cast<std::uint8_t>(bits);
+/// Looks for triangles of which a smaller part than `over` is turned over.
+void Triangulator::mend(double over, std::vector<PolygonTriangle>& triangles) {
+    if (least_area_.cut(flat_, triangles)) return;
+    // Where sides cross everywhere this takes far more steps, and mends nothing.
+    constexpr std::uint64_t kStepsPerCorner = 256;
+    loose_.clear();
+    const bool done = loose_ears_.cut(flat_, kLooseAngle, kStepsPerCorner * flat_.size(), loose_);
+    if (done && turned_over(flat_, loose_) < over) triangles.swap(loose_);
 }
 
 Triangulator::Shape Triangulator::triangulate(std::span<const glm::dvec3> corners,
@@ -81,10 +103,12 @@ Triangulator::Shape Triangulator::triangulate(std::span<const glm::dvec3> corner
         make_fan(n, triangles);
         return Shape::convex;
     }
-    if (!ears_.cut(flat_, triangles)) {
+    if (ears_.work() > kWorkLimit ||
+        !ears_.cut(flat_, kSameAngle, kWorkLimit - ears_.work(), triangles)) {
         triangles.clear();
         return Shape::too_complex;
     }
+    if (const double over = turned_over(flat_, triangles); over > 0) mend(over, triangles);
     return convex ? Shape::convex : Shape::concave;
 }
 

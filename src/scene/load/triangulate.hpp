@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "scene/load/ear_cutter.hpp"
+#include "scene/load/least_area.hpp"
 
 namespace sightline::load {
-
-/// Bit k: side k of the triangle (from its corner k to the next) is a side of the polygon of n
-/// corners, not a diagonal.
-[[nodiscard]] std::uint8_t polygon_edge_bits(const PolygonTriangle& triangle, std::uint32_t n);
 
 /// Triangulates one polygon after another. Not thread-safe; use one a thread.
 class Triangulator {
@@ -21,18 +18,27 @@ public:
     /// What a polygon turned out to be.
     enum class Shape { convex, concave, too_complex };
 
+    /// Steps for all polygons together, some ten seconds: only a file made for it needs more.
+    static constexpr std::uint64_t kWorkLimit = std::uint64_t{1} << 32;
+
     /// Replaces `triangles` by exactly n - 2 triangles of the polygon with these n >= 3 corners:
     /// a fan from the first corner when the polygon is convex and no triangle of that fan is
     /// without area, else ears cut off in the polygon's plane. Corners that coincide, lie on a
-    /// line, or touch other sides are fine; where sides cross, the triangles still share the
-    /// polygon's corners and sides, but overlap. Typically O(n log n). `too_complex` (and no
-    /// triangles) when all polygons so far took EarCutter::kWorkLimit steps.
+    /// line, or touch other sides are fine, and so are spikes and bridges of no width: the
+    /// triangles cover what the polygon does, once. Where sides cross, they still share the
+    /// polygon's corners and sides, but overlap: as little as they can, up to
+    /// LeastArea::kMostCorners. Typically O(n log n). `too_complex` (and no triangles) when all
+    /// polygons so far took kWorkLimit steps.
     Shape triangulate(std::span<const glm::dvec3> corners, std::vector<PolygonTriangle>& triangles);
 
 private:
-    EarCutter ears_;
+    void mend(double over, std::vector<PolygonTriangle>& triangles);
+
+    EarCutter ears_, loose_ears_;
+    LeastArea least_area_;
     std::vector<glm::dvec3> relative_;
     std::vector<glm::dvec2> flat_;
+    std::vector<PolygonTriangle> loose_;
 };
 
 }  // namespace sightline::load
