@@ -31,6 +31,9 @@ namespace {
 // Coordinates in files are floats or decimals of about six digits.
 constexpr double kToleranceOfSize = 0x1p-20;        // of the scene's radius
 constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
+// The same for scenes that were moved to the origin, in terms of Scene::rounding, which is 2^-24 of
+// what was the largest coordinate.
+constexpr double kToleranceOfRounding = 4;
 // How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
 // size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
 constexpr double kNormalTolerance = 0x1p-12;
@@ -63,7 +66,8 @@ public:
         for (int k = 0; k < 3; ++k)
             largest =
                 std::max({largest, std::abs(scene.bounds.lo[k]), std::abs(scene.bounds.hi[k])});
-        tolerance_ = std::max(kToleranceOfSize * radius_, kToleranceOfCoordinate * largest);
+        tolerance_ = std::max({kToleranceOfSize * radius_, kToleranceOfCoordinate * largest,
+                               kToleranceOfRounding * scene.rounding});
     }
 
     void run() {
