@@ -43,9 +43,9 @@ struct PeerFrame {
 std::string point(glm::dvec3 p) { return fmt::format("{},{},{}", p.x, p.y, p.z); }
 
 void append_camera(std::vector<std::string>& words, const BenchOptions& options,
-                   const Camera& camera) {
-    words.push_back("--eye=" + point(camera.eye));
-    words.push_back("--target=" + point(camera.target));
+                   const Camera& camera, glm::dvec3 offset) {
+    words.push_back("--eye=" + point(camera.eye + offset));
+    words.push_back("--target=" + point(camera.target + offset));
     words.push_back("--up=" + point(camera.up));
     if (camera.is_perspective()) {
         // With --zoom the angle is not that of --fov.
@@ -76,7 +76,7 @@ std::vector<std::string> command_line(const std::string& program, const BenchOpt
     add("repeat-gap", options.repeat_gap);
     if (options.farthest_first) words.emplace_back("--farthest-first");
     if (options.cull == Cull::back) words.emplace_back("--cull");
-    if (bench.own_camera) append_camera(words, options, bench.camera);
+    if (bench.own_camera) append_camera(words, options, bench.camera, bench.scene.offset);
     return words;
 }
 

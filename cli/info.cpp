@@ -94,14 +94,15 @@ void json_scene(const Scene& scene, Value::Object& object) {
     object.emplace_back("degenerate_triangles", scene.counts.degenerate_triangles);
     object.emplace_back("ignored_primitives", scene.counts.ignored_primitives);
     object.emplace_back("lights", std::uint64_t{scene.lights.size()});
-    object.emplace_back("bounds",
-                        Value::Object{{"min", scene.bounds.lo}, {"max", scene.bounds.hi}});
+    object.emplace_back("bounds", Value::Object{{"min", scene.bounds.lo + scene.offset},
+                                                {"max", scene.bounds.hi + scene.offset}});
+    object.emplace_back("offset", scene.offset);
 }
 
-Value json_camera(const Camera& camera) {
+Value json_camera(const Camera& camera, glm::dvec3 offset) {
     Value::Object object{{"projection", name_of(camera.projection)},
-                         {"eye", camera.eye},
-                         {"target", camera.target},
+                         {"eye", camera.eye + offset},
+                         {"target", camera.target + offset},
                          {"gaze", camera.gaze()},
                          {"right", camera.right},
                          {"up", camera.up}};
@@ -120,7 +121,7 @@ std::string as_json(const InfoOptions& options, const Scene& scene, const Camera
     for (const std::string& path : options.models.paths) files.emplace_back(path);
     Value::Object object{{"files", files}};
     json_scene(scene, object);
-    object.emplace_back("camera", json_camera(camera));
+    object.emplace_back("camera", json_camera(camera, scene.offset));
     object.emplace_back("vanishing_points",
                         Value::Object{{"x", json_point(vanishing.principal[0])},
                                       {"y", json_point(vanishing.principal[1])},
@@ -138,6 +139,13 @@ std::string as_json(const InfoOptions& options, const Scene& scene, const Camera
 // -- text --------------------------------------------------------------------------------------
 
 std::string text_of(glm::dvec3 v) { return fmt::format("{:.6g}, {:.6g}, {:.6g}", v.x, v.y, v.z); }
+
+/// A point of the scene as it stands in the file: with all digits where six tell nothing.
+std::string text_of_point(glm::dvec3 point, glm::dvec3 offset) {
+    if (offset == glm::dvec3(0)) return text_of(point);
+    const glm::dvec3 p = point + offset;
+    return fmt::format("{:.15g}, {:.15g}, {:.15g}", p.x, p.y, p.z);
+}
 
 std::string text_of(const VanishingPoint& point) {
     return point ? fmt::format("{:.2f}, {:.2f}", point->x, point->y) : "at infinity";
@@ -162,22 +170,25 @@ std::string scene_text(const Scene& scene) {
                         fmt::format("{:.2f}", m.opacity)});
     }
     text += fmt::format("\n{}\n", to_grid(rows));
-    return text + to_table({{"", "triangles", scene.triangle_count(), ""},
-                            {"", "surfaces that are not polygons",
-                             std::uint64_t{scene.quadrics.size()}, ""},
-                            {"", "polygons", scene.counts.polygons, ""},
-                            {"", "vertices", std::uint64_t{scene.positions.size()}, ""},
-                            {"", "degenerate triangles", scene.counts.degenerate_triangles, ""},
-                            {"", "points and lines ignored", scene.counts.ignored_primitives, ""},
-                            {"", "lights", std::uint64_t{scene.lights.size()}, ""},
-                            {"", "lowest corner", text_of(scene.bounds.lo), ""},
-                            {"", "highest corner", text_of(scene.bounds.hi), ""}});
+    std::vector<Row> table = {
+        {"", "triangles", scene.triangle_count(), ""},
+        {"", "surfaces that are not polygons", std::uint64_t{scene.quadrics.size()}, ""},
+        {"", "polygons", scene.counts.polygons, ""},
+        {"", "vertices", std::uint64_t{scene.positions.size()}, ""},
+        {"", "degenerate triangles", scene.counts.degenerate_triangles, ""},
+        {"", "points and lines ignored", scene.counts.ignored_primitives, ""},
+        {"", "lights", std::uint64_t{scene.lights.size()}, ""},
+        {"", "lowest corner", text_of_point(scene.bounds.lo, scene.offset), ""},
+        {"", "highest corner", text_of_point(scene.bounds.hi, scene.offset), ""}};
+    if (scene.offset != glm::dvec3(0))
+        table.push_back({"", "offset", text_of_point(glm::dvec3(0), scene.offset), ""});
+    return text + to_table(table);
 }
 
-std::string camera_text(const Camera& camera) {
+std::string camera_text(const Camera& camera, glm::dvec3 offset) {
     std::vector<Row> rows = {{"", "projection", name_of(camera.projection), ""},
-                             {"", "eye", text_of(camera.eye), ""},
-                             {"", "target", text_of(camera.target), ""},
+                             {"", "eye", text_of_point(camera.eye, offset), ""},
+                             {"", "target", text_of_point(camera.target, offset), ""},
                              {"", "gaze", text_of(camera.gaze()), ""},
                              {"", "right", text_of(camera.right), ""},
                              {"", "up", text_of(camera.up), ""}};
@@ -205,7 +216,7 @@ std::string as_text(const InfoOptions& options, const Scene& scene, const Camera
                         text_of(vanishing.asked[i]), ""});
     }
     return fmt::format("{}\nCamera\n{}\nVanishing points in pixels ({})\n{}", scene_text(scene),
-                       camera_text(camera), vanishing.title(), to_table(rows));
+                       camera_text(camera, scene.offset), vanishing.title(), to_table(rows));
 }
 
 Result<int> run(const Arguments& arguments) {

@@ -245,7 +245,7 @@ CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& ove
 
 Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked, Resolution resolution) {
     const CameraOptions options = merge_cameras(scene.camera.value_or(CameraOptions{}), asked);
-    return make_camera(options, scene.reach, resolution);
+    return make_camera(options, scene, resolution);
 }
 
 Resolution read_resolution(OptionReader& reader, Resolution fallback, std::uint64_t max_pixels) {

@@ -128,7 +128,7 @@ Result<std::vector<Camera>> find_cameras(const RenderOptions& options, const Sce
     const FrameOptions& frames = options.frames;
     const CameraOptions own = scene.camera.value_or(CameraOptions{});
     const auto camera = [&](const CameraOptions& asked) {
-        return make_camera(asked, scene.reach, options.resolution);
+        return make_camera(asked, scene, options.resolution);
     };
     std::vector<Camera> cameras;
     if (frames.path.empty()) {

@@ -1,5 +1,6 @@
-// Every model is loaded twice where the camera has to be fitted: once for its bounds, once for the
-// picture. In between nothing of it stays.
+// Every model is loaded twice: once for its bounds, which decide the offset of the whole and the
+// camera, and once for the picture; three times where the whole has an offset. In between nothing
+// of it stays.
 #include "render_stream.hpp"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace {
 
 /// What is known of all parts before the first is drawn.
 struct Survey {
-    Scene frame;  ///< empty, but for the box of all parts and the camera of the first that has one
+    /// Empty, but for the box and the offset of all parts and the camera of the first that has one.
+    Scene frame;
     bool has_normals = false;
 };
 
@@ -24,9 +26,12 @@ struct StreamTotals {
     std::uint64_t triangles = 0, largest = 0, objects = 0;
 };
 
-Result<Scene> load_part(const RenderOptions& options, std::size_t k) {
+/// A part in the coordinates of the whole.
+Result<Scene> load_part(const RenderOptions& options, std::size_t k, glm::dvec3 offset) {
     const std::vector<std::string> path{options.models.paths[k]};
-    return load_scene(path, options.models.options);
+    LoadOptions loading = options.models.options;
+    loading.offset = offset;
+    return load_scene(path, loading);
 }
 
 void include(const Scene& part, Survey& survey) {
@@ -38,12 +43,13 @@ void include(const Scene& part, Survey& survey) {
     survey.has_normals = survey.has_normals || has_file_normals(part);
 }
 
-Result<Survey> survey_parts(const RenderOptions& options, Progress& progress) {
+Result<Survey> survey_parts(const RenderOptions& options, glm::dvec3 offset, Progress& progress) {
     Survey survey;
+    survey.frame.offset = offset;
     const auto count = static_cast<unsigned>(options.models.paths.size());
     for (unsigned k = 0; k < count; ++k) {
         progress.stage("looking at part", k + 1, count);
-        const Result<Scene> part = load_part(options, k);
+        const Result<Scene> part = load_part(options, k, offset);
         if (!part) return part.error();
         include(*part, survey);
     }
@@ -51,13 +57,13 @@ Result<Survey> survey_parts(const RenderOptions& options, Progress& progress) {
     return survey;
 }
 
-/// Whether the camera and the shading are said in full, so that no part need be seen before.
-bool needs_no_survey(const RenderOptions& options) {
-    const CameraOptions& camera = options.camera;
-    const bool perspective =
-        camera.projection.value_or(Projection::perspective) == Projection::perspective;
-    return options.shading && camera.near_plane && camera.far_plane && camera.eye &&
-           (camera.target || camera.direction) && (perspective || camera.ortho_height);
+/// In the coordinates of the files, and where these are far from the origin again relative to the
+/// offset that the whole has then.
+Result<Survey> survey_parts(const RenderOptions& options, Progress& progress) {
+    auto survey = survey_parts(options, glm::dvec3(0), progress);
+    if (!survey) return survey;
+    const glm::dvec3 offset = offset_for(survey->frame.reach);
+    return offset == glm::dvec3(0) ? std::move(survey) : survey_parts(options, offset, progress);
 }
 
 class StreamRun {
@@ -67,27 +73,21 @@ public:
 
     Result<std::vector<Row>> run() {
         Stopwatch watch;
-        Survey survey;
-        survey.frame.reach = {glm::dvec3(-1), glm::dvec3(1)};
-        if (!needs_no_survey(options_)) {
-            survey.frame.reach = {};
-            auto seen = survey_parts(options_, progress_);
-            if (!seen) return seen.error();
-            survey = std::move(*seen);
-        }
-        const auto camera = camera_for(survey.frame, options_.camera, options_.resolution);
+        const auto survey = survey_parts(options_, progress_);
+        if (!survey) return survey.error();
+        const auto camera = camera_for(survey->frame, options_.camera, options_.resolution);
         if (!camera) return camera.error();
         totals_.load = watch.ms();
         std::vector<Output> outputs;
         for (const PictureOutput& picture : options_.outputs) outputs.push_back(picture.output);
         OutputBatch batch(std::move(outputs));
         const std::vector<PictureFile> files = files_of(options_, batch, options_.outputs);
-        const Shading shading = shading_for(options_, survey.has_normals);
+        const Shading shading = shading_for(options_, survey->has_normals);
         DrawOptions drawing;
         drawing.samples_per_axis = options_.per_axis;
         drawing.shading = {shading, linear_color(options_.background), options_.common.threads};
         StreamedPicture picture(*camera, drawing, files);
-        Status done = add_parts(picture, *camera);
+        Status done = add_parts(picture, *camera, survey->frame.offset);
         watch.lap();
         progress_.stage("writing");
         if (done) done = picture.write();
@@ -99,13 +99,13 @@ public:
     }
 
 private:
-    Status add_parts(StreamedPicture& picture, const Camera& camera) {
+    Status add_parts(StreamedPicture& picture, const Camera& camera, glm::dvec3 offset) {
         const auto count = static_cast<unsigned>(options_.models.paths.size());
         ScreenScene screen;
         for (unsigned k = 0; k < count; ++k) {
             progress_.stage("drawing part", k + 1, count);
             Stopwatch watch;
-            Result<Scene> part = load_part(options_, k);
+            Result<Scene> part = load_part(options_, k, offset);
             if (!part) return part.error();
             if (!part->motions.empty()) {
                 return wrong_use("--stream: '{}' has moving objects; leave out --stream",

@@ -16,14 +16,15 @@
 namespace sightline::fuzz {
 
 inline void check_mesh(const load::SoupMesh& mesh) {
-    require(!mesh.polygon_sizes.empty() && !mesh.positions.empty());
+    require(!mesh.polygon_sizes.empty() && mesh.position_count() > 0);
+    require(mesh.positions.empty() || mesh.precise_positions.empty());
     for (const std::uint32_t size : mesh.polygon_sizes) require(size >= 3);
     require(std::accumulate(mesh.polygon_sizes.begin(), mesh.polygon_sizes.end(),
                             std::uint64_t{0}) == mesh.corners.size());
-    for (const std::uint32_t corner : mesh.corners) require(corner < mesh.positions.size());
-    require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
+    for (const std::uint32_t corner : mesh.corners) require(corner < mesh.position_count());
+    require(mesh.colors.empty() || mesh.colors.size() == mesh.position_count());
     if (mesh.normal_corners.empty()) {
-        require(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+        require(mesh.normals.empty() || mesh.normals.size() == mesh.position_count());
         return;
     }
     require(mesh.normal_corners.size() == mesh.corners.size());

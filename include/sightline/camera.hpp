@@ -20,6 +20,7 @@
 namespace sightline {
 
 struct Box;
+struct Scene;
 
 enum class Projection { perspective, orthographic, cavalier, cabinet };
 
@@ -29,6 +30,9 @@ enum class NamedView { front, back, left, right, top, bottom, isometric, dimetri
 /// view. Angles in degrees.
 struct CameraOptions {
     std::optional<glm::dvec3> eye, target;
+    /// Eye and target are in the scene's own coordinates, not in those of its files (which are
+    /// larger by Scene::offset).
+    bool relative = false;
     std::optional<glm::dvec3> up;         ///< default +Y
     std::optional<glm::dvec3> direction;  ///< of the gaze, from the eye into the scene
     std::optional<NamedView> view;        ///< default isometric
@@ -81,15 +85,25 @@ struct Camera {
 [[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
                                          Resolution resolution);
 
+/// The same for a finished scene, fitted to Scene::reach. The camera is in the scene's own
+/// coordinates: eye and target are those of relative_to().
+[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Scene& scene,
+                                         Resolution resolution);
+
+/// The options in the own coordinates of a scene with this offset: eye and target less the offset,
+/// unless they are relative already.
+[[nodiscard]] CameraOptions relative_to(CameraOptions options, glm::dvec3 offset);
+
 /// A camera on a turntable: the options for `camera`, which make_camera() made of `options`, turned
 /// as a whole about the line along `axis` through its target, counter-clockwise when the axis
 /// points at the viewer. Eye, target, up and the size of the view are then given, so that nothing
-/// but near and far (where they are open) is fitted anew. Precondition: axis is not 0.
+/// but near and far (where they are open) is fitted anew. Like the camera they are in the scene's
+/// own coordinates. Precondition: axis is not 0.
 [[nodiscard]] CameraOptions orbited(const CameraOptions& options, const Camera& camera,
                                     glm::dvec3 axis, double degrees);
 
 /// The default camera of the benchmarks: box centre seen from (1, 0.6, 1.2), 2.2 bounding radii
-/// away, fov 40.
+/// away, fov 40; in the coordinates of the box, which are those of the scene.
 [[nodiscard]] CameraOptions bench_camera(const Box& bounds);
 
 /// A vanishing point: pixel coordinates, or nothing when it lies at infinity (the direction is

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +22,9 @@ struct LoadOptions {
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;
     std::size_t file_limit_bytes = std::size_t{4} << 30;
+    /// Scene::offset, when it is decided already: parts of a larger scene share that of the whole,
+    /// offset_for() its box. 0 keeps the coordinates of the files.
+    std::optional<glm::dvec3> offset;
 };
 
 /// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input

@@ -173,7 +173,16 @@ struct Scene {
     std::vector<Quadric> quadrics;
     std::vector<Material> materials;
     std::vector<Light> lights;            ///< empty: one headlight
-    std::optional<CameraOptions> camera;  ///< from scene.json
+    /// From scene.json: in the coordinates of the files, whatever the offset.
+    std::optional<CameraOptions> camera;
+    /// A point of the scene stands at point + offset in the coordinates of its files or arrays.
+    /// finish_scene() chooses it by offset_for() and makes relative to it all that has a place in
+    /// the scene: positions, quadrics, lights, motions (not `camera`). If it isn't 0 before, all of
+    /// that is relative to it already.
+    glm::dvec3 offset{0, 0, 0};
+    /// By how much a coordinate may differ from what was meant, because a file holds 32-bit floats:
+    /// 2^-24 of the largest; 0 for texts and doubles, whose digits are taken as they are.
+    double rounding = 0;
     /// Of objects that share no position and no normal with others; each object is in one at most.
     std::vector<Motion> motions;
 
@@ -192,8 +201,13 @@ struct Scene {
     [[nodiscard]] std::uint32_t object_of(std::uint32_t id) const;
 };
 
-/// Computes what is derived (bounds, degenerate triangles, sheets, closed objects).
-/// Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
+/// The offset of a scene that fills a box: 0 unless the scene lies so far from the origin, compared
+/// with its size, that this would be felt. Subtracting it from the coordinates of any point of the
+/// box is exact. O(1).
+[[nodiscard]] glm::dvec3 offset_for(const Box& box);
+
+/// Chooses the offset, then computes what is derived (bounds, degenerate triangles, sheets, closed
+/// objects). Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
 /// does not depend on the number of threads.
 void finish_scene(Scene& scene);
 

@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "scene/finish.hpp"
+
 namespace sightline {
 namespace {
 
@@ -232,7 +234,7 @@ Result<Scene> subdivide(const Scene& scene, int times) {
     }
     Scene result = scene;
     for (int i = 0; i < times; ++i) result = subdivide_once(std::move(result));
-    if (times > 0) finish_scene(result);
+    if (times > 0) finish_derived_scene(result);
     return result;
 }
 
@@ -246,6 +248,8 @@ Result<Scene> repeat(const Scene& scene, const RepeatOptions& options) {
     result.materials = scene.materials;
     result.lights = scene.lights;
     result.camera = scene.camera;
+    result.offset = scene.offset;
+    result.rounding = scene.rounding;
     result.positions.reserve(scene.positions.size() * options.copies);
     result.triangles.reserve(scene.triangles.size() * options.copies);
     for (std::uint32_t i = 0; i < options.copies; ++i) {
@@ -256,7 +260,7 @@ Result<Scene> repeat(const Scene& scene, const RepeatOptions& options) {
         const std::uint32_t moved = options.farthest_first ? options.copies - 1 - i : i;
         append_quadrics(result, scene, static_cast<double>(moved) * options.step);
     }
-    finish_scene(result);
+    finish_derived_scene(result);
     return result;
 }
 

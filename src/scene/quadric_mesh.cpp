@@ -10,6 +10,7 @@
 
 #include "math/elementary.hpp"
 #include "math/frame.hpp"
+#include "scene/finish.hpp"
 
 namespace sightline {
 namespace {
@@ -93,7 +94,7 @@ public:
         for (std::size_t k = 0; k < quadrics.size(); ++k)
             append(quadrics[k], scene_.objects[first + k]);
         if (!scene_.triangle_colors.empty()) fill(scene_.triangle_colors);
-        finish_scene(scene_);
+        finish_derived_scene(scene_);
     }
 
 private:

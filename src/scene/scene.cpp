@@ -13,6 +13,7 @@
 #include "scene/finish.hpp"
 #include "scene/joined_mesh.hpp"
 #include "scene/motion.hpp"
+#include "scene/recentre.hpp"
 #include "scene/sheets.hpp"
 #include "scene/topology.hpp"
 #include "scene/translucency.hpp"
@@ -33,6 +34,12 @@ Box bounds_of_triangles(const Scene& scene) {
         box = k == 0 ? corners : Box{glm::min(box.lo, corners.lo), glm::max(box.hi, corners.hi)};
     }
     return box;
+}
+
+Box bounds_of_positions(const Scene& scene) {
+    return bounds_of_points(
+        static_cast<std::uint32_t>(scene.positions.size()),
+        [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
 }
 
 void add_quadrics(const std::vector<Quadric>& quadrics, Box& box) {
@@ -87,14 +94,20 @@ std::uint32_t Scene::object_of(std::uint32_t id) const {
 
 void finish_scene(Scene& scene) {
     scene.bounds = bounds_of_triangles(scene);
+    if (recentre(scene)) scene.bounds = bounds_of_triangles(scene);
     derive(scene, false);
 }
 
-void finish_joined_scene(Scene& scene) {
-    scene.bounds =
-        bounds_of_points(static_cast<std::uint32_t>(scene.positions.size()),
-                         [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
+void finish_joined_scene(Scene& scene, const std::optional<glm::dvec3>& offset) {
+    if (offset) move_to_offset(scene, *offset);
+    scene.bounds = bounds_of_positions(scene);
+    if (!offset && recentre(scene)) scene.bounds = bounds_of_positions(scene);
     derive(scene, true);
+}
+
+void finish_derived_scene(Scene& scene) {
+    scene.bounds = bounds_of_triangles(scene);
+    derive(scene, false);
 }
 
 void finish_scene_without_sheets(Scene& scene) {

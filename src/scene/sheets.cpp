@@ -31,6 +31,9 @@ namespace {
 // Coordinates in files are floats or decimals of about six digits.
 constexpr double kToleranceOfSize = 0x1p-20;        // of the scene's radius
 constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
+// The same for scenes that were moved to the origin, in terms of Scene::rounding, which is 2^-24 of
+// what was the largest coordinate.
+constexpr double kToleranceOfRounding = 4;
 // How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
 // size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
 constexpr double kNormalTolerance = 0x1p-12;
@@ -59,7 +62,7 @@ public:
     explicit SheetBuilder(Scene& scene) : scene_(scene) {
         centre_ = scene.bounds.centre();
         radius_ = 0.5 * glm::length(scene.bounds.extent());
-        tolerance_ = coplanar_tolerance(scene.bounds);
+        tolerance_ = coplanar_tolerance(scene.bounds, scene.rounding);
     }
 
     void run() {
@@ -365,12 +368,13 @@ private:
 
 }  // namespace
 
-double coplanar_tolerance(const Box& bounds) {
+double coplanar_tolerance(const Box& bounds, double rounding) {
     const double radius = 0.5 * glm::length(bounds.extent());
     double largest = 0;
     for (int k = 0; k < 3; ++k)
         largest = std::max({largest, std::abs(bounds.lo[k]), std::abs(bounds.hi[k])});
-    return std::max(kToleranceOfSize * radius, kToleranceOfCoordinate * largest);
+    return std::max({kToleranceOfSize * radius, kToleranceOfCoordinate * largest,
+                     kToleranceOfRounding * rounding});
 }
 
 void build_sheets(Scene& scene) { SheetBuilder(scene).run(); }

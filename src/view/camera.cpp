@@ -203,8 +203,22 @@ Result<Camera> make_camera(const CameraOptions& options, const Box& bounds, Reso
     return camera;
 }
 
+Result<Camera> make_camera(const CameraOptions& options, const Scene& scene,
+                           Resolution resolution) {
+    return make_camera(relative_to(options, scene.offset), scene.reach, resolution);
+}
+
+CameraOptions relative_to(CameraOptions options, glm::dvec3 offset) {
+    if (options.relative) return options;
+    if (options.eye) *options.eye -= offset;
+    if (options.target) *options.target -= offset;
+    options.relative = true;
+    return options;
+}
+
 CameraOptions bench_camera(const Box& bounds) {
     CameraOptions options;
+    options.relative = true;
     const double radius = 0.5 * glm::length(bounds.extent());
     options.target = bounds.centre();
     options.eye = bounds.centre() + 2.2 * radius * glm::normalize(glm::dvec3{1, 0.6, 1.2});

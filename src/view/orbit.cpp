@@ -13,6 +13,7 @@ CameraOptions orbited(const CameraOptions& options, const Camera& camera, glm::d
     CameraOptions turned = options;
     turned.direction = std::nullopt;
     turned.view = std::nullopt;
+    turned.relative = true;
     turned.target = camera.target;
     // The sum would round, even where nothing turns.
     turned.eye =

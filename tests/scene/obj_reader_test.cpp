@@ -36,10 +36,11 @@ glm::dvec3 corner(const Scene& scene, std::uint32_t triangle, int k) {
 
 std::string error_of(const std::string& text) { return message_of(load_text(text, "obj")); }
 
-float scanned(const std::string& number) {
+template <class Real = float>
+Real scanned(const std::string& number) {
     const std::string text = number + "\n";
-    float value = -12345;
-    const char* const end = load::scan_float(text.data(), value);
+    Real value = -12345;
+    const char* const end = load::scan_real(text.data(), value);
     EXPECT_TRUE(end != nullptr && *end == '\n') << number;
     return value;
 }
@@ -65,6 +66,37 @@ TEST(ObjReader, NumbersAreRoundedCorrectly) {
     EXPECT_TRUE(std::isnan(scanned("-1.#IND00")));
     EXPECT_EQ(scanned("1.#INF"), std::numeric_limits<float>::infinity());
     EXPECT_EQ(scanned("-inf"), -std::numeric_limits<float>::infinity());
+}
+
+TEST(ObjReader, DoublesAreRoundedCorrectly) {
+    EXPECT_EQ(scanned<double>("431200.18"), 431200.18);
+    EXPECT_EQ(scanned<double>("-5171799.7"), -5171799.7);
+    // Between 1 and the next double.
+    EXPECT_EQ(scanned<double>("1.00000000000000011102230246251565404"), 1.0);
+    EXPECT_EQ(scanned<double>("1.00000000000000011102230246251565405"), std::nextafter(1.0, 2.0));
+    EXPECT_EQ(scanned<double>("9007199254740993"), 9007199254740992.0);
+    EXPECT_EQ(scanned<double>("5e-324"), std::numeric_limits<double>::denorm_min());
+    EXPECT_EQ(scanned<double>("1e-400"), 0.0);
+    EXPECT_EQ(scanned<double>("-1e400"), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(scanned<double>("1.#INF"), std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(scanned<double>("-1.#IND00")));
+    std::mt19937_64 random(8);
+    std::array<char, 64> text;
+    for (int i = 0; i < 20000; ++i) {
+        const double exact = std::bit_cast<double>(random());
+        if (!std::isfinite(exact)) continue;
+        const double value = random() % 2 == 0 ? exact : std::remainder(exact, 1e7);
+        const auto printed =
+            std::to_chars(text.data(), text.data() + text.size(), value,
+                          std::chars_format::scientific, static_cast<int>(random() % 25));
+        double expected = 0;
+        const auto read = std::from_chars(text.data(), printed.ptr, expected);
+        if (read.ec != std::errc()) continue;
+        const std::string number(text.data(), printed.ptr);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(scanned<double>(number)),
+                  std::bit_cast<std::uint64_t>(expected))
+            << number;
+    }
 }
 
 TEST(ObjReader, NumbersEqualTheStandardLibrarys) {

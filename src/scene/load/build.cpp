@@ -39,12 +39,25 @@ glm::dmat3 normal_transform(const glm::dmat3& m) {
     return glm::determinant(m) < 0 ? -cofactors : cofactors;
 }
 
+double largest_of(const glm::dvec3& p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+/// By how much a transform may move a point whose coordinates are off by 2^-24 of `largest`, along
+/// an axis: floats are rounded to that.
+double rounding_of(const glm::dmat4& m, double largest) {
+    double stretch = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        stretch =
+            std::max(stretch, std::abs(m[0][axis]) + std::abs(m[1][axis]) + std::abs(m[2][axis]));
+    return 0x1p-24 * stretch * largest;
+}
+
 const char* fault_of(const glm::dvec3& p) {
-    double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
         if (std::isnan(p[axis])) return "a coordinate that is not a number (NaN)";
-        largest = std::max(largest, std::abs(p[axis]));
     }
+    const double largest = largest_of(p);
     if (std::isinf(largest)) return "an infinite coordinate";
     return largest > kLargestCoordinate ? "a coordinate beyond 1e30" : nullptr;
 }
@@ -174,7 +187,9 @@ Status SceneBuilder::append_object(const Instance& instance) {
     object.material = material_of(mesh, instance.placement);
     const std::size_t normals_before = scene_.normals.size();
     fill_attributes(mesh);
+    largest_float_ = 0;
     if (Status added = append_polygons(instance); !added) return added;
+    scene_.rounding = std::max(scene_.rounding, rounding_of(instance.transform, largest_float_));
     object.triangle_count = scene_.triangle_count() - object.first_triangle;
     object.has_file_normals = scene_.normals.size() > normals_before;
     if (!scene_.triangle_normals.empty()) {
@@ -199,7 +214,7 @@ void SceneBuilder::fill_attributes(const SoupMesh& mesh) {
 
 Status SceneBuilder::append_polygons(const Instance& instance) {
     const SoupMesh& mesh = instance.mesh;
-    placed_positions_.assign(mesh.positions.size(), kNone);
+    placed_positions_.assign(mesh.position_count(), kNone);
     placed_normals_.assign(mesh.normals.size(), kNone);
     placed_colors_.assign(mesh.colors.size(), kNone);
     const std::size_t triangles =
@@ -207,7 +222,7 @@ Status SceneBuilder::append_polygons(const Instance& instance) {
     reserve_more(scene_.triangles, triangles);
     reserve_more(scene_.triangle_polygon, triangles);
     reserve_more(scene_.polygon_edges, triangles);
-    PositionJoiner joiner(scene_.positions, std::min(mesh.positions.size(), mesh.corners.size()));
+    PositionJoiner joiner(scene_.positions, std::min(mesh.position_count(), mesh.corners.size()));
     Polygon polygon{0, 0};
     for (const std::uint32_t size : mesh.polygon_sizes) {
         polygon.size = size;
@@ -255,14 +270,14 @@ Status SceneBuilder::append_polygon(const Instance& instance, const Polygon& pol
 Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex,
                                   PositionJoiner& joiner) {
     const SoupMesh& mesh = instance.mesh;
-    if (vertex >= mesh.positions.size()) {
+    if (vertex >= mesh.position_count()) {
         return Error{
             ErrorKind::bad_input,
             fmt::format("{}: object '{}' refers to vertex {}, but has only {}; the file is "
                         "damaged, export it again",
-                        instance.placement.file, instance.name, vertex, mesh.positions.size())};
+                        instance.placement.file, instance.name, vertex, mesh.position_count())};
     }
-    const glm::dvec3 stored(mesh.positions[vertex]);
+    const glm::dvec3 stored = mesh.position(vertex);
     const glm::dvec3 position(instance.transform * glm::dvec4(stored, 1.0));
     const char* fault = fault_of(stored);
     if (fault == nullptr) fault = fault_of(position);
@@ -271,6 +286,7 @@ Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex
                      fmt::format("{}: vertex {} of object '{}' has {}; repair or rescale the model",
                                  instance.placement.file, vertex, instance.name, fault)};
     }
+    if (!mesh.positions.empty()) largest_float_ = std::max(largest_float_, largest_of(stored));
     placed_positions_[vertex] = joiner.add(position);
     return success();
 }

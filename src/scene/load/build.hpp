@@ -81,6 +81,7 @@ private:
     std::uint32_t polygons_ = 0;
     std::uint32_t first_material_ = 0;  ///< of the soup at hand
     Triangulator triangulator_;
+    double largest_float_ = 0;  ///< coordinate of the mesh at hand, if it holds floats
     // What the vertices and normals of the mesh at hand have become in the scene, or kNone.
     std::vector<std::uint32_t> placed_positions_, placed_normals_, placed_colors_;
     // Scratch.

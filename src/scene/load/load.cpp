@@ -226,13 +226,13 @@ Result<Scene> Loader::finish(const std::string& name) {
     scene.motions = std::move(motions_);
     scene.lights = std::move(lights_);
     scene.camera = camera_;
-    finish_joined_scene(scene);
+    finish_joined_scene(scene, options_.offset);
     if (!is_moderate(scene.reach)) {
         return bad_input(fmt::format(
             "{}: the frames of a model take it beyond 1e30; use smaller numbers", name));
     }
     if (scene.bounds.lo == scene.bounds.hi) {
-        const glm::dvec3& p = scene.bounds.lo;
+        const glm::dvec3 p = scene.bounds.lo + scene.offset;
         return bad_input(
             fmt::format("{}: a scene of one point: every corner is at ({:g}, {:g}, {:g}); "
                         "use a model that has a size",

@@ -61,7 +61,8 @@ private:
     void parse_position();
     void parse_face();
     void add_event(ObjEvent::Kind kind, std::size_t keyword);
-    std::size_t parse_numbers(std::array<float, 7>& numbers);
+    template <class Real>
+    std::size_t parse_numbers(std::array<Real, 7>& numbers);
     bool parse_reference(bool& has_normal);
     bool add_index(ObjIndices& indices, std::int64_t index, bool is_normal);
     [[nodiscard]] std::uint64_t count_words();
@@ -123,11 +124,12 @@ std::uint64_t ChunkParser::count_words() {
 }
 
 /// The line's numbers after the keyword; how many (those beyond the seventh are not kept).
-std::size_t ChunkParser::parse_numbers(std::array<float, 7>& numbers) {
+template <class Real>
+std::size_t ChunkParser::parse_numbers(std::array<Real, 7>& numbers) {
     std::size_t count = 0;
     for (skip(); !at_end_of_line(); skip()) {
-        float number = 0;
-        const char* const end = scan_float(p_, number);
+        Real number = 0;
+        const char* const end = scan_real(p_, number);
         if (end == nullptr || !(is_blank(*end) || is_line_end(*end) || *end == '\\')) {
             fail(fmt::format("'{}' is not a number", word()));
             return 0;
@@ -139,7 +141,7 @@ std::size_t ChunkParser::parse_numbers(std::array<float, 7>& numbers) {
 }
 
 void ChunkParser::parse_position() {
-    std::array<float, 7> n{};
+    std::array<double, 7> n{};
     const char* const line = p_++;
     const std::size_t count = parse_numbers(n);
     if (chunk_.fault) return;

@@ -35,7 +35,8 @@ struct ObjIndices {
 };
 
 struct ObjChunk {
-    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::vec3> normals;
     std::vector<glm::vec4> colors;             ///< one a position, or empty
     std::vector<std::uint32_t> polygon_sizes;  ///< >= 3
     ObjIndices corners;

@@ -20,7 +20,7 @@ constexpr float kDefaultDiffuse = 0.6f;
 std::size_t scan_numbers(const char* p, std::array<float, 3>& numbers) {
     std::size_t count = 0;
     for (p = skip_blanks(p); count < 3 && !is_line_end(*p); p = skip_blanks(p)) {
-        const char* const end = scan_float(p, numbers[count]);
+        const char* const end = scan_real(p, numbers[count]);
         if (end == nullptr) break;
         p = end;
         ++count;

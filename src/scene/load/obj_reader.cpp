@@ -159,11 +159,11 @@ void ObjReader::join_chunks() {
         colors = colors || !chunk.colors.empty();
         normals = normals || !chunk.normal_corners.values.empty();
     }
-    all_.positions.reserve(counts_.empty() ? 0 : counts_[0].positions);
+    all_.precise_positions.reserve(counts_.empty() ? 0 : counts_[0].positions);
     all_.polygon_sizes.reserve(polygons);
     all_.corners.reserve(corners);
     for (ObjChunk& chunk : chunks_) {
-        append(all_.positions, chunk.positions);
+        append(all_.precise_positions, chunk.positions);
         append(all_.polygon_sizes, chunk.polygon_sizes);
         append(all_.corners, chunk.corners.values);
         if (normals) {
@@ -173,7 +173,7 @@ void ObjReader::join_chunks() {
         }
         if (colors) {
             append(all_.colors, chunk.colors);
-            all_.colors.resize(all_.positions.size(), glm::vec4(1));
+            all_.colors.resize(all_.precise_positions.size(), glm::vec4(1));
         }
         soup_.ignored_primitives += chunk.ignored;
     }
@@ -245,7 +245,7 @@ SoupMesh ObjReader::part(const Run& run, std::size_t first_corner) {
     };
     mesh.corners.reserve(corners);
     renumber(all_.corners, part_positions_, mesh.corners, [&](std::uint32_t index) {
-        mesh.positions.push_back(all_.positions[index]);
+        mesh.precise_positions.push_back(all_.precise_positions[index]);
         if (!all_.colors.empty()) mesh.colors.push_back(all_.colors[index]);
     });
     if (!all_.normal_corners.empty()) {
@@ -258,7 +258,7 @@ SoupMesh ObjReader::part(const Run& run, std::size_t first_corner) {
 
 void ObjReader::make_meshes() {
     if (runs_.size() > 1) {
-        part_positions_.assign(all_.positions.size(), kNone);
+        part_positions_.assign(all_.precise_positions.size(), kNone);
         part_normals_.assign(all_.normals.size(), kNone);
     }
     std::size_t first_corner = 0;

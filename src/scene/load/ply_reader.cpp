@@ -25,8 +25,9 @@ constexpr std::uint64_t kRecordsBetweenChecks = 65536;  // of time and memory
 constexpr std::uint64_t kNegativeLength = ~std::uint64_t{0};
 
 std::uint64_t memory_of(const SoupMesh& mesh) {
-    return mesh.positions.size() * sizeof(glm::vec3) + mesh.normals.size() * sizeof(glm::vec3) +
-           mesh.colors.size() * sizeof(glm::vec4) +
+    return mesh.positions.size() * sizeof(glm::vec3) +
+           mesh.precise_positions.size() * sizeof(glm::dvec3) +
+           mesh.normals.size() * sizeof(glm::vec3) + mesh.colors.size() * sizeof(glm::vec4) +
            (mesh.corners.capacity() + mesh.polygon_sizes.capacity()) * sizeof(std::uint32_t);
 }
 
@@ -86,8 +87,8 @@ Error PlyReader<Values>::failure(const PlyElement& element, std::uint64_t index)
     if constexpr (!Values::kBinary) {
         const bool at_value = values_.skip_space();
         const char* const p = values_.position();
-        float number = 0;
-        if (at_value && scan_float(p, number) != skip_word(p)) {
+        double number = 0;
+        if (at_value && scan_real(p, number) != skip_word(p)) {
             const std::string word = one_line({p, static_cast<std::size_t>(skip_word(p) - p)});
             return context_.at_line(file_,
                                     header_.size + static_cast<std::size_t>(p - body_.data()),
@@ -136,6 +137,7 @@ Status PlyReader<Values>::skip_element(const PlyElement& element) {
 template <class Values>
 bool PlyReader<Values>::read_vertex(Values& values, const PlyVertexPlan& plan, std::size_t index) {
     using enum PlyVertexPlan::Slot;
+    glm::dvec3 position(0);
     PlyVertexPlan::Numbers n{};
     n[kAlpha] = 1;
     for (const auto& [property, slot, divisor] : plan.entries) {
@@ -143,11 +145,19 @@ bool PlyReader<Values>::read_vertex(Values& values, const PlyVertexPlan& plan, s
             if (!skip_list(values, *property)) return false;
             continue;
         }
+        if (slot <= kZ) {
+            if (!values.real(property->type, position[static_cast<int>(slot)])) return false;
+            continue;
+        }
         float value = 0;
         if (!values.real(property->type, value)) return false;
         n[slot] = divisor == 1 ? value : value / divisor;
     }
-    mesh_.positions[index] = {n[kX], n[kY], n[kZ]};
+    if (mesh_.positions.empty()) {
+        mesh_.precise_positions[index] = position;
+    } else {
+        mesh_.positions[index] = position;
+    }
     if (!mesh_.normals.empty()) mesh_.normals[index] = {n[kNx], n[kNy], n[kNz]};
     if (!mesh_.colors.empty()) mesh_.colors[index] = {n[kRed], n[kGreen], n[kBlue], n[kAlpha]};
     return true;
@@ -157,16 +167,23 @@ template <class Values>
 Status PlyReader<Values>::read_vertices(const PlyElement& element) {
     using enum PlyVertexPlan::Slot;
     const PlyVertexPlan plan(element);
-    if (!mesh_.positions.empty()) return context_.unreadable("ply", "it has two elements 'vertex'");
+    if (mesh_.position_count() > 0)
+        return context_.unreadable("ply", "it has two elements 'vertex'");
     if (!plan.has_all(kX, kZ)) {
         return context_.unreadable("ply", "its element 'vertex' has no x, y and z");
     }
     const bool normals = plan.has_all(kNx, kNz), colors = plan.has_all(kRed, kBlue);
     const std::size_t count = element.count;
-    Status fits = context_.check(
-        count * (sizeof(glm::vec3) * (normals ? 2 : 1) + sizeof(glm::vec4) * (colors ? 1 : 0)));
+    const bool precise = plan.precise || !Values::kBinary;  // a text is as precise as its digits
+    Status fits = context_.check(count * ((precise ? sizeof(glm::dvec3) : sizeof(glm::vec3)) +
+                                          (normals ? sizeof(glm::vec3) : 0) +
+                                          (colors ? sizeof(glm::vec4) : 0)));
     if (!fits) return fits;
-    mesh_.positions.resize(count);
+    if (precise) {
+        mesh_.precise_positions.resize(count);
+    } else {
+        mesh_.positions.resize(count);
+    }
     if (normals) mesh_.normals.resize(count);
     if (colors) mesh_.colors.resize(count);
     if constexpr (Values::kBinary) {

@@ -42,13 +42,16 @@ public:
     [[nodiscard]] bool has_room(std::uint64_t values, PlyType) const {
         return values <= static_cast<std::uint64_t>(end_ - p_) / 2 + 1;
     }
-    bool real(PlyType, float& value) { return skip_space() && accept(scan_float(p_, value)); }
+    template <class Real>
+    bool real(PlyType, Real& value) {
+        return skip_space() && accept(scan_real(p_, value));
+    }
     bool integer(PlyType, std::int64_t& value) {
         if (!skip_space()) return false;
         const char* const end = scan_integer(p_, value);
         if (accept(end)) return true;
-        float number = 0;  // such as 3.0
-        if (!accept(scan_float(p_, number))) return false;
+        double number = 0;  // such as 3.0
+        if (!accept(scan_real(p_, number))) return false;
         value = integer_of(number);
         return true;
     }
@@ -100,9 +103,10 @@ public:
     bool skip(PlyType type, std::uint64_t count) {
         return has_room(count, type) && skip_bytes(count * size_of(type));
     }
-    bool real(PlyType type, float& value) {
+    template <class Real>
+    bool real(PlyType type, Real& value) {
         if (!has_room(1, type)) return false;
-        with_type(type, [&](auto stored) { value = static_cast<float>(get<decltype(stored)>()); });
+        with_type(type, [&](auto stored) { value = static_cast<Real>(get<decltype(stored)>()); });
         return true;
     }
     bool integer(PlyType type, std::int64_t& value) {

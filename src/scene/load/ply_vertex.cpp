@@ -42,6 +42,10 @@ float full_strength(PlyType type) {
     }
 }
 
+bool fits_float(PlyType type) {
+    return type != PlyType::float64 && type != PlyType::int32 && type != PlyType::uint32;
+}
+
 }  // namespace
 
 PlyVertexPlan::PlyVertexPlan(const PlyElement& element) : stride(0) {
@@ -50,6 +54,7 @@ PlyVertexPlan::PlyVertexPlan(const PlyElement& element) : stride(0) {
         const bool is_color = slot >= kRed && slot <= kAlpha;
         entries.push_back({&property, slot, is_color ? full_strength(property.type) : 1.0f});
         has[slot] = true;
+        precise = precise || (slot <= kZ && !fits_float(property.type));
         if (property.count_type) stride.reset();
         if (stride) *stride += size_of(property.type);
     }

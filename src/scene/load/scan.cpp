@@ -8,8 +8,9 @@
 namespace sightline::load {
 namespace {
 
-/// What a number beyond the range of doubles rounds to as a float: zero or infinity.
-float out_of_range(std::string_view number) {
+/// What a number beyond the range of doubles rounds to: zero or infinity.
+template <class Real>
+Real out_of_range(std::string_view number) {
     const bool negative = number.starts_with('-');
     const std::size_t exponent = number.find_first_of("eE");
     bool tiny = false;
@@ -20,8 +21,32 @@ float out_of_range(std::string_view number) {
         const std::string_view integer = number.substr(0, number.find('.'));
         tiny = integer.find_first_of("123456789") == std::string_view::npos;
     }
-    const float size = tiny ? 0.0f : std::numeric_limits<float>::infinity();
+    const Real size = tiny ? Real{0} : std::numeric_limits<Real>::infinity();
     return negative ? -size : size;
+}
+
+template <class Real>
+const char* scan_unusual(const char* p, Real& value) {
+    if (*p == '+') ++p;
+    const char* const end = skip_word(p);
+    Real read = 0;
+    const std::from_chars_result result = std::from_chars(p, end, read);
+    if (result.ec == std::errc::invalid_argument) return nullptr;
+    if (result.ec == std::errc::result_out_of_range) {
+        double wide = 0;
+        const bool fits = std::from_chars(p, end, wide).ec == std::errc();
+        const std::string_view number(p, static_cast<std::size_t>(result.ptr - p));
+        read = fits ? static_cast<Real>(wide) : out_of_range<Real>(number);
+    }
+    if (*result.ptr == '#') {  // 1.#QNAN, -1.#IND, 1.#INF
+        const bool infinite = std::string_view(result.ptr, end).starts_with("#INF");
+        const Real size = infinite ? std::numeric_limits<Real>::infinity()
+                                   : std::numeric_limits<Real>::quiet_NaN();
+        value = *p == '-' ? -size : size;
+        return end;
+    }
+    value = read;
+    return result.ptr;
 }
 
 }  // namespace
@@ -50,27 +75,7 @@ std::size_t line_number(std::string_view text, std::size_t offset) {
     return line;
 }
 
-const char* scan_unusual_float(const char* p, float& value) {
-    if (*p == '+') ++p;
-    const char* const end = skip_word(p);
-    float read = 0;
-    const std::from_chars_result result = std::from_chars(p, end, read);
-    if (result.ec == std::errc::invalid_argument) return nullptr;
-    if (result.ec == std::errc::result_out_of_range) {
-        double wide = 0;
-        const bool fits = std::from_chars(p, end, wide).ec == std::errc();
-        const std::string_view number(p, static_cast<std::size_t>(result.ptr - p));
-        read = fits ? static_cast<float>(wide) : out_of_range(number);
-    }
-    if (*result.ptr == '#') {  // 1.#QNAN, -1.#IND, 1.#INF
-        const bool infinite = std::string_view(result.ptr, end).starts_with("#INF");
-        const float size = infinite ? std::numeric_limits<float>::infinity()
-                                    : std::numeric_limits<float>::quiet_NaN();
-        value = *p == '-' ? -size : size;
-        return end;
-    }
-    value = read;
-    return result.ptr;
-}
+const char* scan_unusual_real(const char* p, float& value) { return scan_unusual(p, value); }
+const char* scan_unusual_real(const char* p, double& value) { return scan_unusual(p, value); }
 
 }  // namespace sightline::load

@@ -1,9 +1,9 @@
 // Words and numbers of text formats, scanned in place.
 //
 // Every text here ends with '\n', which ends every loop: no function reads past it. Numbers are
-// rounded correctly to float: most of them by one exact division or multiplication in double
-// (William D. Clinger, "How to read floating point numbers accurately", 1990), the rest by
-// std::from_chars.
+// rounded correctly to float or double, as the caller asks: most of them by one exact division or
+// multiplication in double (William D. Clinger, "How to read floating point numbers accurately",
+// 1990), the rest by std::from_chars.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 namespace sightline::load {
 
@@ -41,12 +42,15 @@ inline const char* skip_word(const char* p) {
 /// Number of the line (from 1) that the byte at `offset` stands in; CR, LF and CR LF end lines.
 [[nodiscard]] std::size_t line_number(std::string_view text, std::size_t offset);
 
-/// What scan_float() leaves to the general routine: long or special numbers, and nonsense.
-[[nodiscard]] const char* scan_unusual_float(const char* p, float& value);
+/// What scan_real() leaves to the general routine: long or special numbers, and nonsense.
+[[nodiscard]] const char* scan_unusual_real(const char* p, float& value);
+[[nodiscard]] const char* scan_unusual_real(const char* p, double& value);
 
-/// Scans a decimal number, correctly rounded (too large: infinite), "inf" or "nan" (also as
-/// Microsoft's libraries write it). The end of the number, or nullptr when there is none.
-inline const char* scan_float(const char* const begin, float& value) {
+/// Scans a decimal number as a float or a double, correctly rounded (too large: infinite), "inf" or
+/// "nan" (also as Microsoft's libraries write it). The end of the number, or nullptr when there is
+/// none.
+template <class Real>
+const char* scan_real(const char* const begin, Real& value) {
     static constexpr std::array<double, 23> kPowers = {
         1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
         1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -71,24 +75,27 @@ inline const char* scan_float(const char* const begin, float& value) {
         const char* const power = q;
         int stated = 0;
         for (; is_digit(*q) && q - power < 4; ++q) stated = 10 * stated + (*q - '0');
-        if (q == power || is_digit(*q)) return scan_unusual_float(begin, value);
+        if (q == power || is_digit(*q)) return scan_unusual_real(begin, value);
         exponent += minus ? -stated : stated;
         p = q;
     }
     if (count == 0 || count > kMostDigits || *p == '#' || digits > (std::uint64_t{1} << 53) ||
         exponent < -22 || exponent > 22) {
-        return scan_unusual_float(begin, value);
+        return scan_unusual_real(begin, value);
     }
-    // Both operands are exact, so the double is rounded once. Rounding it again to float is right
-    // unless it lies exactly between two floats, where what the first rounding dropped decides.
+    // Both operands are exact, so the double is rounded once.
     const auto integer = static_cast<double>(digits);
     const double exact = exponent < 0 ? integer / kPowers[static_cast<std::size_t>(-exponent)]
                                       : integer * kPowers[static_cast<std::size_t>(exponent)];
-    constexpr std::uint64_t kDropped = (std::uint64_t{1} << 29) - 1, kHalf = kDropped / 2 + 1;
-    if ((std::bit_cast<std::uint64_t>(exact) & kDropped) == kHalf) {
-        return scan_unusual_float(begin, value);
+    if constexpr (std::is_same_v<Real, float>) {
+        // Rounding it again is right unless it lies exactly between two floats, where what the
+        // first rounding dropped decides.
+        constexpr std::uint64_t kDropped = (std::uint64_t{1} << 29) - 1, kHalf = kDropped / 2 + 1;
+        if ((std::bit_cast<std::uint64_t>(exact) & kDropped) == kHalf) {
+            return scan_unusual_real(begin, value);
+        }
     }
-    value = static_cast<float>(negative ? -exact : exact);
+    value = static_cast<Real>(negative ? -exact : exact);
     return p;
 }
 

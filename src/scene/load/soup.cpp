@@ -8,7 +8,7 @@
 namespace sightline::load {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32504f534c535f5full;  // changes with the layout
+constexpr std::uint64_t kMagic = 0x33504f534c535f5full;  // changes with the layout
 
 class Writer {
 public:
@@ -104,6 +104,7 @@ void put(Writer& writer, const SoupMesh& mesh) {
     writer.put_text(mesh.name);
     writer.put(mesh.material);
     writer.put_all(mesh.positions);
+    writer.put_all(mesh.precise_positions);
     writer.put_all(mesh.normals);
     writer.put_all(mesh.colors);
     writer.put_all(mesh.polygon_sizes);
@@ -116,21 +117,23 @@ SoupMesh get_mesh(Reader& reader, std::size_t materials) {
     mesh.name = reader.get_text();
     mesh.material = reader.get<std::uint32_t>();
     mesh.positions = reader.get_all<glm::vec3>();
+    mesh.precise_positions = reader.get_all<glm::dvec3>();
     mesh.normals = reader.get_all<glm::vec3>();
     mesh.colors = reader.get_all<glm::vec4>();
     mesh.polygon_sizes = reader.get_all<std::uint32_t>();
     mesh.corners = reader.get_all<std::uint32_t>();
     mesh.normal_corners = reader.get_all<std::uint32_t>();
     reader.require(mesh.material == kNone || mesh.material < materials);
+    reader.require(mesh.positions.empty() || mesh.precise_positions.empty());
     const std::size_t normals = mesh.normals.size();
     if (mesh.normal_corners.empty()) {
-        reader.require(normals == 0 || normals == mesh.positions.size());
+        reader.require(normals == 0 || normals == mesh.position_count());
     } else {
         reader.require(mesh.normal_corners.size() == mesh.corners.size());
         reader.require(std::ranges::all_of(
             mesh.normal_corners, [&](auto index) { return index < normals || index == kNone; }));
     }
-    reader.require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
+    reader.require(mesh.colors.empty() || mesh.colors.size() == mesh.position_count());
     reader.require(std::ranges::all_of(mesh.polygon_sizes, [](auto size) { return size >= 3; }));
     reader.require(std::accumulate(mesh.polygon_sizes.begin(), mesh.polygon_sizes.end(),
                                    std::uint64_t{0}) == mesh.corners.size());
@@ -154,7 +157,7 @@ SoupObject get_object(Reader& reader, std::size_t meshes) {
 
 // Bytes that the smallest thing of each kind takes: bounds what a count may ask for.
 constexpr std::size_t kLeastMaterial = 8 + sizeof(glm::vec3) + 3 * sizeof(float);
-constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 6 * 8;
+constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 7 * 8;
 constexpr std::size_t kLeastObject = 8 + sizeof(std::uint32_t) + sizeof(glm::dmat4);
 
 }  // namespace

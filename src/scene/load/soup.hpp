@@ -22,12 +22,21 @@ namespace sightline::load {
 struct SoupMesh {
     std::string name;
     std::uint32_t material = kNone;  ///< index into Soup::materials, or kNone
-    std::vector<glm::vec3> positions;
+    // Positions as precise as the file has them: all in one of these, the other is empty.
+    std::vector<glm::vec3> positions;           ///< of files that hold floats
+    std::vector<glm::dvec3> precise_positions;  ///< of texts, and of files that hold doubles
     std::vector<glm::vec3> normals;             ///< one a position unless normal_corners says which
     std::vector<glm::vec4> colors;              ///< one a position, or empty
     std::vector<std::uint32_t> polygon_sizes;   ///< number of corners of each polygon, >= 3
     std::vector<std::uint32_t> corners;         ///< the polygons' vertices, one after another
     std::vector<std::uint32_t> normal_corners;  ///< normal of each corner (kNone: none), or empty
+
+    [[nodiscard]] std::size_t position_count() const {
+        return positions.size() + precise_positions.size();
+    }
+    [[nodiscard]] glm::dvec3 position(std::size_t index) const {
+        return positions.empty() ? precise_positions[index] : glm::dvec3(positions[index]);
+    }
 };
 
 /// A mesh at a node.

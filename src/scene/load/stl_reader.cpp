@@ -39,7 +39,8 @@ struct Fault {
 
 /// A piece of an ascii file. Polygons have vertices of their own and one normal each.
 struct Chunk {
-    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::vec3> normals;
     std::vector<std::uint32_t> polygon_sizes;
     std::vector<Solid> solids;
     std::uint64_t ignored = 0;
@@ -63,10 +64,11 @@ private:
     }
     void fail(const char* what) { chunk_.fault = Fault{facet_ ? facet_start_ : p_, what}; }
     /// Three numbers; false when they are not there.
-    bool scan(glm::vec3& numbers) {
+    template <class Vector>
+    bool scan(Vector& numbers) {
         for (int axis = 0; axis < 3; ++axis) {
             skip();
-            const char* const end = p_ < end_ ? scan_float(p_, numbers[axis]) : nullptr;
+            const char* const end = p_ < end_ ? scan_real(p_, numbers[axis]) : nullptr;
             if (end == nullptr || !(is_blank(*end) || is_line_end(*end))) return false;
             p_ = end;
         }
@@ -88,7 +90,7 @@ void ChunkParser::parse_statement() {
     if (starts_with_word(p_, "vertex")) {
         if (!facet_) return fail("a vertex outside a facet");
         p_ += 6;
-        glm::vec3 position;
+        glm::dvec3 position;
         if (!scan(position)) return fail("a facet with a vertex that is not three numbers");
         chunk_.positions.push_back(position);
         ++facet_corners_;
@@ -161,9 +163,9 @@ void append(const Chunk& chunk, std::size_t first, std::size_t end, std::size_t&
         const auto normal = static_cast<std::uint32_t>(mesh.normals.size());
         mesh.normals.push_back(chunk.normals[polygon]);
         for (std::uint32_t k = 0; k < size; ++k) {
-            mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.corners.push_back(static_cast<std::uint32_t>(mesh.precise_positions.size()));
             mesh.normal_corners.push_back(normal);
-            mesh.positions.push_back(chunk.positions[position++]);
+            mesh.precise_positions.push_back(chunk.positions[position++]);
         }
     }
 }
@@ -202,7 +204,7 @@ Result<Soup> read_ascii(std::string_view text, const ReadContext& context) {
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
         if (!context.check(memory)) return;
         Chunk& chunk = chunks[i] = ChunkParser(pieces[i]).parse();
-        memory += chunk.positions.capacity() * sizeof(glm::vec3) +
+        memory += chunk.positions.capacity() * sizeof(glm::dvec3) +
                   chunk.normals.capacity() * (sizeof(glm::vec3) + sizeof(std::uint32_t)) +
                   chunk.solids.capacity() * sizeof(Solid);
     });
