@@ -54,7 +54,9 @@ struct Camera {
     Resolution resolution;
     glm::dvec3 eye{0, 0, 0}, target{0, 0, -1};
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};  ///< orthonormal, right-handed
-    double fov = 40;                                        ///< vertical, degrees; perspective only
+    /// The gaze as it was said, of any length: -back is this, rounded.
+    glm::dvec3 aim{0, 0, -1};
+    double fov = 40;           ///< vertical, degrees; perspective only
     double view_height = 2;    ///< of the view plane: at depth 1 in perspective, else in units
     glm::dvec2 oblique{0, 0};  ///< shift on the page of a point one unit behind the target's plane
     double near_plane = 1, far_plane = 2;  ///< depths, near < far; near > 0 in perspective
@@ -70,6 +72,10 @@ struct Camera {
     /// Direction in the world (not normalised) along which a point is seen: from the eye to it in
     /// perspective, the direction of projection otherwise.
     [[nodiscard]] glm::dvec3 view_vector(glm::dvec3 point) const;
+    /// Whether the plane through three points contains the eye, or in parallel projections the
+    /// direction of projection: it is seen as a line. Decided exactly, on the very numbers that
+    /// stand here: the eye; `aim` in orthographic views; the view vector in oblique ones.
+    [[nodiscard]] bool sees_edge_on(const std::array<glm::dvec3, 3>& corners) const;
     /// The point of the world at a depth that projects onto a pixel coordinate.
     [[nodiscard]] glm::dvec3 unproject(glm::dvec2 pixel, double depth) const;
 };

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "math/coplanar.hpp"
 #include "math/elementary.hpp"
 #include "sightline/scene.hpp"
 #include "view/frames.hpp"
@@ -97,6 +98,7 @@ Aim choose_aim(const CameraOptions& o, const Ball& ball, Projection projection) 
 Status set_frame(Camera& camera, const Aim& aim) {
     if (glm::length(aim.gaze) == 0)
         return wrong("the camera stands at the centre of the scene: give --target or --direction");
+    camera.aim = aim.gaze;
     camera.back = -glm::normalize(aim.gaze);
     const glm::dvec3 across = glm::cross(glm::normalize(aim.up), camera.back);
     if (!(glm::length(across) > 1e-9))
@@ -229,6 +231,12 @@ glm::dvec2 Camera::pixel_of(glm::dvec3 point) const {
 glm::dvec3 Camera::view_vector(glm::dvec3 point) const {
     if (is_perspective()) return point - eye;
     return gaze() - oblique.x * right - oblique.y * up;
+}
+
+bool Camera::sees_edge_on(const std::array<glm::dvec3, 3>& corners) const {
+    if (is_perspective()) return math::is_in_plane(corners, eye);
+    return math::is_parallel_to_plane(
+        corners, projection == Projection::orthographic ? aim : view_vector(corners[0]));
 }
 
 glm::dvec3 Camera::unproject(glm::dvec2 pixel, double depth) const {

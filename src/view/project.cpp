@@ -193,6 +193,7 @@ private:
         std::vector<ScreenPoint> polygon;
         for (std::uint32_t t = 0; t < scene().triangle_count(); ++t) {
             if (screen_.skip_[t] != kClipped) continue;
+            if (screen_.is_edge_on(t)) continue;
             polygon.clear();
             clip_triangle(transform_, corners_of(t), polygon);
             if (polygon.size() >= 3)
