@@ -251,6 +251,7 @@ void RegionFinder::subtract_hiders(const PageLine& carrier, CarrierSide beside,
 BorderPiece RegionFinder::piece(const PageLine& carrier, const Stretch& stretch,
                                 bool reversed) const {
     BorderPiece piece;
+    piece.own = !reversed;
     const auto place = [&](const Place& p, glm::ivec2& rounded, glm::dvec2& exact) {
         if (p.corner != nullptr) {
             rounded = {p.corner->x, p.corner->y};
