@@ -1,22 +1,15 @@
-// Every model is loaded twice where the camera has to be fitted: once for its bounds, once for the
-// picture. In between nothing of it stays.
+// Every model is loaded once for the plan, once more where it may share planes with others, and
+// once for the picture. In between only what the plan keeps of it stays.
 #include "render_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
 #include "errors.hpp"
 #include "suggest.hpp"
 
 namespace sightline::cli {
 namespace {
-
-/// What is known of all parts before the first is drawn.
-struct Survey {
-    Scene frame;  ///< empty, but for the box of all parts and the camera of the first that has one
-    bool has_normals = false;
-};
 
 /// Times and sizes of a run.
 struct StreamTotals {
@@ -26,38 +19,33 @@ struct StreamTotals {
 
 Result<Scene> load_part(const RenderOptions& options, std::size_t k) {
     const std::vector<std::string> path{options.models.paths[k]};
-    return load_scene(path, options.models.options);
+    LoadOptions loading = options.models.options;
+    loading.find_sheets = false;
+    return load_scene(path, loading);
 }
 
-void include(const Scene& part, Survey& survey) {
-    Box& box = survey.frame.reach;
-    if (!part.reach.empty())
-        box = box.empty() ? part.reach
-                          : Box{glm::min(box.lo, part.reach.lo), glm::max(box.hi, part.reach.hi)};
-    if (!survey.frame.camera) survey.frame.camera = part.camera;
-    survey.has_normals = survey.has_normals || has_file_normals(part);
-}
-
-Result<Survey> survey_parts(const RenderOptions& options, Progress& progress) {
-    Survey survey;
+/// Looks at all parts, and again at those that may share a plane with another one.
+Status make_plan(const RenderOptions& options, Progress& progress, StreamPlan& plan) {
     const auto count = static_cast<unsigned>(options.models.paths.size());
     for (unsigned k = 0; k < count; ++k) {
         progress.stage("looking at part", k + 1, count);
         const Result<Scene> part = load_part(options, k);
         if (!part) return part.error();
-        include(*part, survey);
+        if (part->camera && plan.frame().camera)
+            return failure("{}: camera: another scene file has one already; keep one",
+                           options.models.paths[k]);
+        plan.survey(*part);
     }
-    survey.frame.bounds = survey.frame.reach;
-    return survey;
-}
-
-/// Whether the camera and the shading are said in full, so that no part need be seen before.
-bool needs_no_survey(const RenderOptions& options) {
-    const CameraOptions& camera = options.camera;
-    const bool perspective =
-        camera.projection.value_or(Projection::perspective) == Projection::perspective;
-    return options.shading && camera.near_plane && camera.far_plane && camera.eye &&
-           (camera.target || camera.direction) && (perspective || camera.ortho_height);
+    plan.finish_survey();
+    for (unsigned k = 0; k < count; ++k) {
+        if (!plan.is_shared(k)) continue;
+        progress.stage("comparing part", k + 1, count);
+        Result<Scene> part = load_part(options, k);
+        if (!part) return part.error();
+        plan.compare(k, *part);
+    }
+    plan.finish_comparison();
+    return success();
 }
 
 class StreamRun {
@@ -67,27 +55,21 @@ public:
 
     Result<std::vector<Row>> run() {
         Stopwatch watch;
-        Survey survey;
-        survey.frame.reach = {glm::dvec3(-1), glm::dvec3(1)};
-        if (!needs_no_survey(options_)) {
-            survey.frame.reach = {};
-            auto seen = survey_parts(options_, progress_);
-            if (!seen) return seen.error();
-            survey = std::move(*seen);
-        }
-        const auto camera = camera_for(survey.frame, options_.camera, options_.resolution);
+        if (Status done = make_plan(options_, progress_, plan_); !done) return done.error();
+        const auto camera = camera_for(plan_.frame(), options_.camera, options_.resolution);
         if (!camera) return camera.error();
         totals_.load = watch.ms();
         std::vector<Output> outputs;
         for (const PictureOutput& picture : options_.outputs) outputs.push_back(picture.output);
         OutputBatch batch(std::move(outputs));
         const std::vector<PictureFile> files = files_of(options_, batch, options_.outputs);
-        const Shading shading = shading_for(options_, survey.has_normals);
+        const Shading shading = shading_for(options_, plan_.has_file_normals());
         DrawOptions drawing;
         drawing.samples_per_axis = options_.per_axis;
         drawing.shading = {shading, linear_color(options_.background), options_.common.threads};
-        StreamedPicture picture(*camera, drawing, files);
-        Status done = add_parts(picture, *camera);
+        StreamedPicture picture(*camera, drawing, files, &plan_);
+        Status done = plan_.set_view(*camera, {options_.cull, options_.common.threads});
+        if (done) done = add_parts(picture, *camera);
         watch.lap();
         progress_.stage("writing");
         if (done) done = picture.write();
@@ -113,9 +95,11 @@ private:
             }
             if (options_.shading && is_smooth(*options_.shading))
                 make_normals(*part, options_.crease_angle);
+            plan_.adopt(k, *part);
             totals_.load += watch.lap();
             const ProjectOptions projecting{options_.cull, options_.common.threads};
             if (Status done = project(*part, camera, projecting, screen); !done) return done;
+            plan_.adopt(k, screen);
             totals_.project += watch.lap();
             if (Status done = picture.add(screen); !done) return done;
             totals_.resolve += watch.lap();
@@ -145,6 +129,7 @@ private:
 
     const RenderOptions& options_;
     Progress& progress_;
+    StreamPlan plan_;
     StreamTotals totals_;
 };
 

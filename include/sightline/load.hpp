@@ -20,6 +20,8 @@ struct LoadOptions {
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;
     std::size_t file_limit_bytes = std::size_t{4} << 30;
+    /// False: Scene::sheets stay empty, for they will be those of a StreamPlan.
+    bool find_sheets = true;
 };
 
 /// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input

@@ -55,6 +55,8 @@ struct Object {
     std::uint32_t first_triangle = 0, triangle_count = 0;
     std::uint32_t first_polygon = 0, polygon_count = 0;
     std::uint32_t material = 0;  ///< index into Scene::materials
+    /// Number of the file it came from, among those that were loaded together; see Sheets.
+    std::uint32_t part = 0;
     bool has_file_normals = false;
     /// Every edge is shared by exactly two faces that run along it in opposite directions, and
     /// every connected part encloses a positive volume: only then may back faces be removed.
@@ -111,7 +113,9 @@ struct Quadric {
 
 /// Faces that are coplanar in the world, clustered once when the scene is finished. The
 /// triangles of a sheet share one plane on every screen, so that walls, decals and the halves of a
-/// quad never fight: where they meet in depth they tie exactly, and the lower id wins.
+/// quad never fight: where they meet in depth they tie exactly, and the lower id wins. They are
+/// found part by part (Object::part) and then joined as wholes, so that who has one part at a time
+/// finds the same ones; see StreamPlan.
 struct Sheets {
     AlignedVector<std::uint32_t> of_triangle;  ///< sheet of each triangle, or kNone; may be empty
     /// Triangles of sheet s: members[first[s]] .. members[first[s + 1] - 1], in ascending order.

@@ -56,8 +56,6 @@ void find_degenerate(Scene& scene) {
     if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
 }
 
-enum class FindSheets { yes, no };
-
 /// What is derived, after the bounds of the triangles.
 void derive(Scene& scene, bool joined, FindSheets sheets = FindSheets::yes) {
     add_quadrics(scene.quadrics, scene.bounds);
@@ -90,11 +88,11 @@ void finish_scene(Scene& scene) {
     derive(scene, false);
 }
 
-void finish_joined_scene(Scene& scene) {
+void finish_joined_scene(Scene& scene, FindSheets sheets) {
     scene.bounds =
         bounds_of_points(static_cast<std::uint32_t>(scene.positions.size()),
                          [&](std::uint32_t i) -> const glm::dvec3& { return scene.positions[i]; });
-    derive(scene, true);
+    derive(scene, true, sheets);
 }
 
 void finish_scene_without_sheets(Scene& scene) {
