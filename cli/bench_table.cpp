@@ -41,7 +41,7 @@ Result<Camera> table_camera(const Scene& scene, const glm::dvec3 box, Resolution
     options.ortho_height = box.y;
     options.eye = glm::dvec3(0.5 * box.x, 0.5 * box.y, box.z + 1);
     options.target = glm::dvec3(0.5 * box.x, 0.5 * box.y, 0);
-    return make_camera(options, scene.bounds, resolution);
+    return make_camera(options, scene, resolution);
 }
 
 Result<double> time_resolve(const Algorithm& algorithm, const ScreenScene& screen,

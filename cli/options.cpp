@@ -243,9 +243,12 @@ CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& ove
     return merged;
 }
 
+CameraOptions merge_cameras(const Scene& scene, const CameraOptions& asked) {
+    return merge_cameras(scene.camera.value_or(CameraOptions{}), asked);
+}
+
 Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked, Resolution resolution) {
-    const CameraOptions options = merge_cameras(scene.camera.value_or(CameraOptions{}), asked);
-    return make_camera(options, scene.reach, resolution);
+    return make_camera(merge_cameras(scene, asked), scene, resolution);
 }
 
 Resolution read_resolution(OptionReader& reader, Resolution fallback, std::uint64_t max_pixels) {

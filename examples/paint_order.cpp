@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     const auto scene = sightline::load_scene(paths);
     if (!scene) return fail(scene.error());
     const sightline::Resolution size{800, 600};
-    const auto camera = sightline::make_camera({}, scene->bounds, size);
+    const auto camera = sightline::make_camera({}, *scene, size);
     if (!camera) return fail(camera.error());
     const auto screen = sightline::project(*scene, *camera);
     if (!screen) return fail(screen.error());

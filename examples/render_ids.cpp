@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
 
     sightline::CameraOptions view;
     view.direction = glm::dvec3(-1, -0.6, -1.2);  // the rest is fitted to the model
-    const auto camera = sightline::make_camera(view, scene.value().bounds, {640, 480});
+    const auto camera = sightline::make_camera(view, scene.value(), {640, 480});
     if (!camera) return fail(camera.error());
 
     const auto screen = sightline::project(scene.value(), camera.value());

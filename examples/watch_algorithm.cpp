@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> paths = {argv[1]};
     const auto scene = sightline::load_scene(paths);
     if (!scene) return fail(scene.error());
-    const auto camera = sightline::make_camera({}, scene->bounds, {480, 360});
+    const auto camera = sightline::make_camera({}, *scene, {480, 360});
     if (!camera) return fail(camera.error());
     const auto screen = sightline::project(*scene, *camera);
     if (!screen) return fail(screen.error());

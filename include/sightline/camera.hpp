@@ -8,8 +8,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +22,7 @@
 namespace sightline {
 
 struct Box;
+struct Scene;
 
 enum class Projection { perspective, orthographic, cavalier, cabinet };
 
@@ -39,6 +42,10 @@ struct CameraOptions {
     std::optional<double> zoom;           ///< default 1; enlarges about the centre
     std::optional<double> near_plane, far_plane;  ///< depths; fitted to the scene when absent
 };
+
+/// The fitted near plane of a perspective is at least this share of far. A step of z at the depth d
+/// is d^2 / near / 2^30, so at the far end 1 / 1e-5 / 2^30 = 1e-4 of far.
+inline constexpr double kLeastNear = 1e-5;
 
 inline constexpr std::uint32_t kMaxSide = 65536;  ///< largest width or height of a picture
 
@@ -74,11 +81,42 @@ struct Camera {
     [[nodiscard]] glm::dvec3 unproject(glm::dvec2 pixel, double depth) const;
 };
 
+/// Depths from one to another; empty until something is taken in.
+struct DepthRange {
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = -std::numeric_limits<double>::infinity();
+    [[nodiscard]] bool empty() const { return nearest > farthest; }
+    void take_in(const DepthRange& other);
+    friend bool operator==(const DepthRange&, const DepthRange&) = default;
+};
+
+/// Faces whose plane holds the eye cover nothing, but their edges can be drawn.
+enum class EdgeOn { counts, is_left_out };
+
+/// The depths at which a finished scene lies within the four sides of a view, whatever its near and
+/// far planes; in perspective only what is in front of the eye. Triangles are clipped by the sides;
+/// of a quadric the nearest depth is a lower bound, by little, and the farthest that of its box. Of
+/// what moves all frames count. O(triangles), on all cores; the result does not depend on their
+/// number.
+[[nodiscard]] DepthRange depths_in_view(const Scene& scene, const Camera& camera,
+                                        EdgeOn edge_on = EdgeOn::counts);
+
+/// Tells at which depths something lies within the four sides of a view.
+using DepthsInView = std::function<DepthRange(const Camera&)>;
+
 /// Decides every number of a camera. `bounds` is the box of the scene, used to fit the view and the
-/// near and far planes. Errors (bad_option): fov outside (0, 180), near not below far, eye =
-/// target, up parallel to the gaze, heights, zooms or sizes that are not positive, values not
-/// finite.
+/// near and far planes. In perspective, where the box reaches nearer to the eye's plane than 1e-4
+/// of the far plane, near is fitted to the nearest depth that `depths` tells for a view 0.1 %
+/// larger, if it is given; the fitted near is at least 1e-5 of the fitted far (or of a smaller one
+/// that is given), which can cut what is nearer. Errors (bad_option): fov outside (0, 180), near
+/// not below far, eye = target, up parallel to the gaze, heights, zooms or sizes that are not
+/// positive, values not finite.
 [[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
+                                         Resolution resolution, const DepthsInView& depths = {});
+
+/// The same for a finished scene, fitted to Scene::reach and depths_in_view(): nothing that can be
+/// seen is cut by a fitted plane, unless it is nearer than 1e-5 of far.
+[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Scene& scene,
                                          Resolution resolution);
 
 /// A camera on a turntable: the options for `camera`, which make_camera() made of `options`, turned

@@ -174,6 +174,9 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Light> lights;            ///< empty: one headlight
     std::optional<CameraOptions> camera;  ///< from scene.json
+    /// What files hold that has no effect, a line each, for people: textures, material libraries
+    /// that are missing, points and lines.
+    std::vector<std::string> notes;
     /// Of objects that share no position and no normal with others; each object is in one at most.
     std::vector<Motion> motions;
 

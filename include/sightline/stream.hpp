@@ -34,6 +34,9 @@ public:
     /// all cores. Errors: as of resolve().
     [[nodiscard]] Status add(const ScreenScene& part);
 
+    /// Whether a surface of the parts so far covers a sample.
+    [[nodiscard]] bool anything_seen() const;
+
     /// Writes the files, in their order. Errors: as of the write_* functions; bad_option for a mask
     /// in an EXR and for a deep file.
     [[nodiscard]] Status write() const;

@@ -55,6 +55,9 @@ struct Visibility {
     }
 };
 
+/// Whether something is seen at one of the samples. Ends at the first.
+[[nodiscard]] bool sees_anything(const Visibility& visibility);
+
 /// The depth of a plane at a point of the screen, in units of the depth grid: computed from the
 /// integers of the plane, within 2^-20 of the rational value, and clamped to 0 .. 2^30. Every depth
 /// that is written to a file comes from here. Precondition: plane.c > 0.

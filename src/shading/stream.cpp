@@ -145,6 +145,8 @@ struct StreamedPicture::State {
         });
     }
 
+    void note_seen(const Visibility& seen) { anything_seen = anything_seen || sees_anything(seen); }
+
     void take_maps(const ScreenScene& part, const Visibility& seen) {
         const RowMaps of_part(part, seen, is_smooth(options.shading.shading));
         tbb::enumerable_thread_specific<std::vector<float>> depth_rows;
@@ -267,6 +269,7 @@ struct StreamedPicture::State {
     IdImage triangles, objects;
     NormalImage normals;
     std::uint32_t first_id = 0, first_object = 0;  // of the next part
+    bool anything_seen = false;
 };
 
 StreamedPicture::StreamedPicture(const Camera& camera, const DrawOptions& options,
@@ -285,6 +288,7 @@ Status StreamedPicture::add(const ScreenScene& part) {
         Status done = resolve(default_algorithm(), part, resolving, seen);
         if (!done) return done;
         state.take_colors(part, seen);
+        state.note_seen(seen);
     }
     if (state.centres) {
         resolving.samples_per_axis = 1;
@@ -293,12 +297,15 @@ Status StreamedPicture::add(const ScreenScene& part) {
             if (!done) return done;
         }
         state.take_maps(part, seen);
+        if (!state.colors) state.note_seen(seen);
     }
     const Scene& scene = part.scene();
     state.first_id += scene.triangle_count() + static_cast<std::uint32_t>(scene.quadrics.size());
     state.first_object += static_cast<std::uint32_t>(scene.objects.size());
     return success();
 }
+
+bool StreamedPicture::anything_seen() const { return state_->anything_seen; }
 
 Status StreamedPicture::write() const {
     for (const PictureFile& file : state_->files)

@@ -42,7 +42,7 @@ int main() {
     options.projection = sightline::Projection::orthographic;
     options.target = glm::dvec3(0, 0, 0);
     options.ortho_height = 2;
-    const auto camera = sightline::make_camera(options, scene.bounds, {64, 64});
+    const auto camera = sightline::make_camera(options, scene, {64, 64});
     if (!camera.ok()) return fail("camera", camera.error());
     const auto screen = sightline::project(scene, camera.value());
     if (!screen.ok()) return fail("project", screen.error());

@@ -58,7 +58,7 @@ Camera forward(Resolution size, double near_plane = 0.01, double far_plane = 100
     options.fov = 90;
     options.near_plane = near_plane;
     options.far_plane = far_plane;
-    return must(make_camera(options, {}, size));
+    return must(make_camera(options, Box{}, size));
 }
 
 /// Centre of pixel k, row by row, in pixel coordinates.

@@ -8,7 +8,7 @@
 namespace sightline::load {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32504f534c535f5full;  // changes with the layout
+constexpr std::uint64_t kMagic = 0x33504f534c535f5full;  // changes with the layout
 
 class Writer {
 public:
@@ -153,6 +153,7 @@ SoupObject get_object(Reader& reader, std::size_t meshes) {
 }
 
 // Bytes that the smallest thing of each kind takes: bounds what a count may ask for.
+constexpr std::size_t kLeastText = 8;
 constexpr std::size_t kLeastMaterial = 8 + sizeof(glm::vec3) + 3 * sizeof(float);
 constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 6 * 8;
 constexpr std::size_t kLeastObject = 8 + sizeof(std::uint32_t) + sizeof(glm::dmat4);
@@ -164,6 +165,8 @@ std::vector<std::byte> serialise(const Soup& soup) {
     writer.put(kMagic);
     writer.put(std::uint8_t{soup.srgb_colors});
     writer.put(soup.ignored_primitives);
+    writer.put(std::uint64_t{soup.notes.size()});
+    for (const std::string& note : soup.notes) writer.put_text(note);
     writer.put(std::uint64_t{soup.materials.size()});
     for (const Material& material : soup.materials) put(writer, material);
     writer.put(std::uint64_t{soup.meshes.size()});
@@ -179,6 +182,9 @@ std::optional<Soup> deserialise(std::span<const std::byte> bytes) {
     reader.require(reader.get<std::uint64_t>() == kMagic);
     soup.srgb_colors = reader.get<std::uint8_t>() != 0;
     soup.ignored_primitives = reader.get<std::uint64_t>();
+    for (std::size_t n = reader.get_count(kLeastText); n > 0 && reader.ok(); --n) {
+        soup.notes.push_back(reader.get_text());
+    }
     for (std::size_t n = reader.get_count(kLeastMaterial); n > 0 && reader.ok(); --n) {
         soup.materials.push_back(get_material(reader));
     }
