@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -93,6 +94,9 @@ void json_scene(const Scene& scene, Value::Object& object) {
     object.emplace_back("vertices", std::uint64_t{scene.positions.size()});
     object.emplace_back("degenerate_triangles", scene.counts.degenerate_triangles);
     object.emplace_back("ignored_primitives", scene.counts.ignored_primitives);
+    Value::List notes;
+    for (const std::string& note : scene.notes) notes.emplace_back(note);
+    object.emplace_back("notes", notes);
     object.emplace_back("lights", std::uint64_t{scene.lights.size()});
     object.emplace_back("bounds",
                         Value::Object{{"min", scene.bounds.lo}, {"max", scene.bounds.hi}});
@@ -219,6 +223,12 @@ Result<int> run(const Arguments& arguments) {
     if (!scene->motions.empty()) *scene = posed(*scene, 0);
     const auto camera = camera_for(*scene, options->camera, options->resolution);
     if (!camera) return camera.error();
+    const Notes notes(options->common.quiet, progress);
+    notes.warn_of_files(*scene);
+    notes.warn_of_options(arguments, idle_camera_options({{camera->projection}}));
+    ViewNotes view;
+    view.add({subject_of(*scene), merge_cameras(*scene, options->camera), *camera, {}});
+    view.print(notes, "the picture is blank");
     progress.clear();
     if (options->common.stats) {
         fmt::print(stderr, "{}",

@@ -8,6 +8,7 @@
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "render_frame.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 
@@ -30,6 +31,7 @@ struct Rendered {
     ProjectCounts counts;          ///< `triangles` and `degenerate` are those of the last frame
     std::uint64_t candidates = 0;  ///< triangles that could have been culled
     Drawn drawn;
+    ViewNotes views;
 };
 
 /// Draws all frames into their files. Frames that are finished stay after an error, which names the

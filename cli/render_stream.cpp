@@ -1,5 +1,6 @@
 // Every model is loaded twice where the camera has to be fitted: once for its bounds, once for the
-// picture. In between nothing of it stays.
+// picture; and once more in between where the eye is close to the scene, for the near plane is then
+// fitted to what is in view. In between nothing of it stays.
 #include "render_stream.hpp"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "errors.hpp"
 #include "suggest.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -29,11 +31,13 @@ Result<Scene> load_part(const RenderOptions& options, std::size_t k) {
     return load_scene(path, options.models.options);
 }
 
+void include(const Box& part, Box& whole) {
+    if (part.empty()) return;
+    whole = whole.empty() ? part : Box{glm::min(whole.lo, part.lo), glm::max(whole.hi, part.hi)};
+}
+
 void include(const Scene& part, Survey& survey) {
-    Box& box = survey.frame.reach;
-    if (!part.reach.empty())
-        box = box.empty() ? part.reach
-                          : Box{glm::min(box.lo, part.reach.lo), glm::max(box.hi, part.reach.hi)};
+    include(part.reach, survey.frame.reach);
     if (!survey.frame.camera) survey.frame.camera = part.camera;
     survey.has_normals = survey.has_normals || has_file_normals(part);
 }
@@ -62,10 +66,10 @@ bool needs_no_survey(const RenderOptions& options) {
 
 class StreamRun {
 public:
-    StreamRun(const RenderOptions& options, Progress& progress)
-        : options_(options), progress_(progress) {}
+    StreamRun(const RenderOptions& options, const Notes& notes, Progress& progress)
+        : options_(options), notes_(notes), progress_(progress) {}
 
-    Result<std::vector<Row>> run() {
+    Result<Streamed> run() {
         Stopwatch watch;
         Survey survey;
         survey.frame.reach = {glm::dvec3(-1), glm::dvec3(1)};
@@ -75,8 +79,12 @@ public:
             if (!seen) return seen.error();
             survey = std::move(*seen);
         }
-        const auto camera = camera_for(survey.frame, options_.camera, options_.resolution);
+        const CameraOptions asked = merge_cameras(survey.frame, options_.camera);
+        const auto camera =
+            make_camera(asked, survey.frame.reach, options_.resolution,
+                        [&](const Camera& view) { return depths_of_parts(view, EdgeOn::counts); });
         if (!camera) return camera.error();
+        if (failed_) return *failed_;
         totals_.load = watch.ms();
         std::vector<Output> outputs;
         for (const PictureOutput& picture : options_.outputs) outputs.push_back(picture.output);
@@ -95,10 +103,32 @@ public:
         if (!done) return done.error();
         totals_.write = watch.ms();
         progress_.clear();
-        return rows();
+        const auto depths = [&](const Camera& view, EdgeOn edge_on) {
+            return depths_of_parts(view, edge_on);
+        };
+        ViewNotes view;
+        view.add({{reach_, depths}, asked, *camera, counts_, !picture.anything_seen()});
+        view.print(notes_, "the picture is blank");
+        return Streamed{rows(), survey.frame.camera};
     }
 
 private:
+    /// Of all parts, which are loaded for it.
+    DepthRange depths_of_parts(const Camera& camera, EdgeOn edge_on) {
+        DepthRange range;
+        const auto count = static_cast<unsigned>(options_.models.paths.size());
+        for (unsigned k = 0; k < count && !failed_; ++k) {
+            progress_.stage("measuring part", k + 1, count);
+            const Result<Scene> part = load_part(options_, k);
+            if (part) {
+                range.take_in(depths_in_view(*part, camera, edge_on));
+            } else {
+                failed_ = part.error();
+            }
+        }
+        return range;
+    }
+
     Status add_parts(StreamedPicture& picture, const Camera& camera) {
         const auto count = static_cast<unsigned>(options_.models.paths.size());
         ScreenScene screen;
@@ -111,12 +141,14 @@ private:
                 return wrong_use("--stream: '{}' has moving objects; leave out --stream",
                                  options_.models.paths[k]);
             }
+            notes_.warn_of_files(*part);
             if (options_.shading && is_smooth(*options_.shading))
                 make_normals(*part, options_.crease_angle);
             totals_.load += watch.lap();
             const ProjectOptions projecting{options_.cull, options_.common.threads};
             if (Status done = project(*part, camera, projecting, screen); !done) return done;
             totals_.project += watch.lap();
+            note(*part, screen.counts());
             if (Status done = picture.add(screen); !done) return done;
             totals_.resolve += watch.lap();
             const std::uint64_t triangles = part->triangle_count();
@@ -125,6 +157,13 @@ private:
             totals_.objects += part->objects.size();
         }
         return success();
+    }
+
+    void note(const Scene& part, const ProjectCounts& counts) {
+        include(part.reach, reach_);
+        counts_.triangles += counts.triangles;
+        counts_.degenerate += counts.degenerate;
+        counts_.outside += counts.outside;
     }
 
     [[nodiscard]] std::vector<Row> rows() const {
@@ -144,8 +183,12 @@ private:
     }
 
     const RenderOptions& options_;
+    const Notes& notes_;
     Progress& progress_;
     StreamTotals totals_;
+    Box reach_;  // of the parts that were drawn
+    ProjectCounts counts_;
+    std::optional<Error> failed_;  // of a part that was looked at again
 };
 
 }  // namespace
@@ -173,8 +216,9 @@ void read_stream(OptionReader& reader, RenderOptions& options) {
            "standard input can't be read twice; name files");
 }
 
-Result<std::vector<Row>> render_stream(const RenderOptions& options, Progress& progress) {
-    return StreamRun(options, progress).run();
+Result<Streamed> render_stream(const RenderOptions& options, const Notes& notes,
+                               Progress& progress) {
+    return StreamRun(options, notes, progress).run();
 }
 
 }  // namespace sightline::cli
