@@ -91,6 +91,8 @@ void json_scene(const Scene& scene, Value::Object& object) {
     object.emplace_back("quadrics", std::uint64_t{scene.quadrics.size()});
     object.emplace_back("polygons", scene.counts.polygons);
     object.emplace_back("vertices", std::uint64_t{scene.positions.size()});
+    object.emplace_back("joined_vertices", scene.counts.joined_positions);
+    object.emplace_back("equal_faces", scene.counts.equal_faces);
     object.emplace_back("degenerate_triangles", scene.counts.degenerate_triangles);
     object.emplace_back("ignored_primitives", scene.counts.ignored_primitives);
     object.emplace_back("lights", std::uint64_t{scene.lights.size()});
@@ -167,6 +169,8 @@ std::string scene_text(const Scene& scene) {
                              std::uint64_t{scene.quadrics.size()}, ""},
                             {"", "polygons", scene.counts.polygons, ""},
                             {"", "vertices", std::uint64_t{scene.positions.size()}, ""},
+                            {"", "of them joined to others", scene.counts.joined_positions, ""},
+                            {"", "polygons that equal others", scene.counts.equal_faces, ""},
                             {"", "degenerate triangles", scene.counts.degenerate_triangles, ""},
                             {"", "points and lines ignored", scene.counts.ignored_primitives, ""},
                             {"", "lights", std::uint64_t{scene.lights.size()}, ""},

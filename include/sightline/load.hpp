@@ -16,6 +16,9 @@ struct LoadOptions {
     /// Format of standard input, or an override of the extension: "obj", "ply", ... "" = by
     /// extension.
     std::string format;
+    /// Positions on open edges that are no further apart than this part of their object's size are
+    /// joined; 0: none but equal ones. See finish_scene().
+    double weld = kWeldTolerance;
     /// Limits on the parsing of a foreign file.
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;

@@ -167,6 +167,11 @@ double removed_area(const ScreenScene& page, const ScreenTransform& transform, s
     return 0.5 * std::abs(static_cast<double>(doubled));
 }
 
+/// Whether what shows the other side of a face counts in its place.
+bool has_twin(const Scene& scene, std::uint32_t t) {
+    return !scene.equal_faces.empty() && scene.equal_faces[t] != 0;
+}
+
 /// What is known of faces before any is compared with others.
 std::vector<FaceArea> begin_areas(const ScreenScene& page, int threads) {
     std::vector<FaceArea> areas(page.scene().triangle_count());
@@ -180,7 +185,7 @@ std::vector<FaceArea> begin_areas(const ScreenScene& page, int threads) {
                                   areas[t].front =
                                       facing(page.camera(), {positions[c.x], positions[c.y],
                                                              positions[c.z]}) == Facing::front;
-                                  if (page.culled(t))
+                                  if (page.culled(t) && !has_twin(page.scene(), t))
                                       areas[t].projected = removed_area(page, transform, t);
                               }
                           });

@@ -8,6 +8,7 @@
 
 #include "math/frame.hpp"
 #include "scene/bounds.hpp"
+#include "scene/finish.hpp"
 
 namespace sightline {
 namespace {
@@ -148,7 +149,7 @@ Scene posed(const Scene& scene, std::uint32_t frame) {
         const std::size_t last = motion.frames.size() - 1;
         move(result, objects_of(motion), motion.frames[std::min<std::size_t>(frame, last)]);
     }
-    finish_scene(result);
+    finish_posed_scene(result);
     result.reach = scene.reach;
     return result;
 }

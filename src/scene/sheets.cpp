@@ -24,13 +24,12 @@
 #include <span>
 #include <tuple>
 
+#include "scene/tolerance.hpp"
+
 namespace sightline {
 
 namespace {
 
-// Coordinates in files are floats or decimals of about six digits.
-constexpr double kToleranceOfSize = 0x1p-20;        // of the scene's radius
-constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
 // How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
 // size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
 constexpr double kNormalTolerance = 0x1p-12;
@@ -59,11 +58,7 @@ public:
     explicit SheetBuilder(Scene& scene) : scene_(scene) {
         centre_ = scene.bounds.centre();
         radius_ = 0.5 * glm::length(scene.bounds.extent());
-        double largest = 0;
-        for (int k = 0; k < 3; ++k)
-            largest =
-                std::max({largest, std::abs(scene.bounds.lo[k]), std::abs(scene.bounds.hi[k])});
-        tolerance_ = std::max(kToleranceOfSize * radius_, kToleranceOfCoordinate * largest);
+        tolerance_ = rounding_of(scene.bounds);
     }
 
     void run() {

@@ -226,7 +226,7 @@ Result<Scene> Loader::finish(const std::string& name) {
     scene.motions = std::move(motions_);
     scene.lights = std::move(lights_);
     scene.camera = camera_;
-    finish_joined_scene(scene);
+    finish_joined_scene(scene, options_.weld);
     if (!is_moderate(scene.reach)) {
         return bad_input(fmt::format(
             "{}: the frames of a model take it beyond 1e30; use smaller numbers", name));
