@@ -189,7 +189,7 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"triangles", "triangles", counts.triangles, ""},
         {"quadrics", "surfaces that are not polygons", std::uint64_t{scene.quadrics.size()}, ""},
         {"degenerate_triangles", "degenerate triangles dropped", counts.degenerate, ""},
-        {"back_facing", "triangles that face away", counts.back_facing, ""},
+        {"back_facing", "triangles that face away", rendered.back_facing, ""},
         {"culled", "triangles culled by side", counts.culled, ""},
         {"culled_percent", "share culled", std::round(100 * culled) / 100, "%"},
         {"outside", "triangles outside of the view", counts.outside, ""},

@@ -206,7 +206,6 @@ void add_counters(std::vector<Counter>& sum, const std::vector<Counter>& frame) 
 void add(Rendered& sum, const ProjectCounts& counts, const Drawn& drawn) {
     sum.counts.triangles = counts.triangles;
     sum.counts.degenerate = counts.degenerate;
-    sum.counts.back_facing += counts.back_facing;
     sum.counts.culled += counts.culled;
     sum.counts.outside += counts.outside;
     sum.counts.clipped += counts.clipped;
@@ -279,6 +278,9 @@ private:
         const auto drawn = draw_outputs(options_, view, pictures, progress_);
         if (!drawn) return drawn.error();
         add(sum_, screen_.counts(), *drawn);
+        if (options_.common.stats || options_.common.json) {
+            sum_.back_facing += count_back_facing(scene, camera, options_.common.threads);
+        }
         return success();
     }
 

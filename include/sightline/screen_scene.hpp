@@ -62,13 +62,12 @@ enum class Cull { automatic, none, back, front };
 
 /// How many triangles project() dropped, and why; for `--stats`.
 struct ProjectCounts {
-    std::uint64_t triangles = 0;    ///< in the scene
-    std::uint64_t degenerate = 0;   ///< no area in the world
-    std::uint64_t back_facing = 0;  ///< of all; counted only when culling is considered
-    std::uint64_t culled = 0;       ///< removed because of the side they show
-    std::uint64_t outside = 0;      ///< wholly outside of the view volume
-    std::uint64_t clipped = 0;      ///< cut by near, far or the guard band
-    std::uint64_t pieces = 0;       ///< triangles that came of the cuts
+    std::uint64_t triangles = 0;   ///< in the scene
+    std::uint64_t degenerate = 0;  ///< no area in the world
+    std::uint64_t culled = 0;      ///< removed because of the side they show
+    std::uint64_t outside = 0;     ///< wholly outside of the view volume
+    std::uint64_t clipped = 0;     ///< cut by near, far or the guard band
+    std::uint64_t pieces = 0;      ///< triangles that came of the cuts
 };
 
 struct ProjectOptions {
@@ -190,5 +189,10 @@ struct QuadricHit {
 /// The same into `out`, whose memory is reused: for one frame after another.
 [[nodiscard]] Status project(const Scene& scene, const Camera& camera,
                              const ProjectOptions& options, ScreenScene& out);
+
+/// How many triangles of a scene turn their back to the camera: of all, in the view or not, drawn
+/// or culled. Those seen edge-on and those without area have no back. O(triangles), on all cores.
+[[nodiscard]] std::uint64_t count_back_facing(const Scene& scene, const Camera& camera,
+                                              int threads = 0);
 
 }  // namespace sightline

@@ -127,13 +127,10 @@ private:
             ++counts.degenerate;
             return kDegenerate;
         }
-        if (culled_side != Facing::edge_on) {
-            const Facing side = facing(screen_.camera_, corners_of(t));
-            if (side == Facing::back) ++counts.back_facing;
-            if (side == culled_side) {
-                ++counts.culled;
-                return kCulled;
-            }
+        if (culled_side != Facing::edge_on &&
+            facing(screen_.camera_, corners_of(t)) == culled_side) {
+            ++counts.culled;
+            return kCulled;
         }
         return some_outside_ && has_outside_corner(t) ? kClipped : kDraw;
     }
@@ -156,12 +153,10 @@ private:
                 },
                 [](ProjectCounts a, const ProjectCounts& b) {
                     a.degenerate += b.degenerate;
-                    a.back_facing += b.back_facing;
                     a.culled += b.culled;
                     return a;
                 });
             screen_.counts_.degenerate += sum.degenerate;
-            screen_.counts_.back_facing += sum.back_facing;
             screen_.counts_.culled += sum.culled;
         }
     }

@@ -103,7 +103,7 @@ void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Vis
 
     std::uint64_t total = 0;
     for (const std::uint64_t count : comparisons) total += count;
-    count(options, "samples", grid.count());
+    count(options, "samples decided", grid.count());
     count(options, "exact comparisons", total);
 }
 
