@@ -159,8 +159,9 @@ public:
     virtual ~LayerSource() = default;
     /// Rows of samples in a band; the last band may have fewer.
     [[nodiscard]] virtual std::uint32_t band_rows() const = 0;
-    /// Hands over the runs of a band. Of two at one sample the farther one comes first. Any number
-    /// of threads may work on different bands.
+    /// Hands over the runs of a band. Of two at one sample the farther one comes first; of exactly
+    /// equally deep ones, as along a fold, either. Any number of threads may work on different
+    /// bands.
     virtual void visit_band(std::uint32_t band, RunSink& sink) = 0;
     /// Appends what was counted so far to the counters of the options.
     virtual void report() = 0;
