@@ -172,7 +172,7 @@ struct Scene {
     /// add_quadric().
     std::vector<Quadric> quadrics;
     std::vector<Material> materials;
-    std::vector<Light> lights;            ///< empty: one headlight
+    std::vector<Light> lights;  ///< empty: one headlight
     /// From scene.json: in the coordinates of the files, whatever the offset.
     std::optional<CameraOptions> camera;
     /// A point of the scene stands at point + offset in the coordinates of its files or arrays.
@@ -207,8 +207,8 @@ struct Scene {
 [[nodiscard]] glm::dvec3 offset_for(const Box& box);
 
 /// Chooses the offset, then computes what is derived (bounds, degenerate triangles, sheets, closed
-/// objects). Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
-/// does not depend on the number of threads.
+/// objects). Precondition: indices are in range and positions finite. O(n log n), on all cores; the
+/// result does not depend on the number of threads.
 void finish_scene(Scene& scene);
 
 /// The finished scene as it stands in a frame, numbered from 0, without motions: triangles and

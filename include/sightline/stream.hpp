@@ -30,8 +30,8 @@ public:
     StreamedPicture& operator=(const StreamedPicture&) = delete;
 
     /// Takes a part, which may go afterwards, with its scene. Precondition: it is projected with
-    /// the camera, and all parts have one offset (see LoadOptions::offset). The order of the parts matters only to the numbers. O(triangles + samples), on
-    /// all cores. Errors: as of resolve().
+    /// the camera, and all parts have one offset (see LoadOptions::offset). The order of the parts
+    /// matters only to the numbers. O(triangles + samples), on all cores. Errors: as of resolve().
     [[nodiscard]] Status add(const ScreenScene& part);
 
     /// Writes the files, in their order. Errors: as of the write_* functions; bad_option for a mask
