@@ -17,6 +17,7 @@
 #include "report.hpp"
 #include "sightline/generate.hpp"
 #include "sightline/sightline.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -143,7 +144,16 @@ std::vector<Row> report_rows(const BenchOptions& options, const BenchScene& benc
     return rows;
 }
 
-Result<int> run_stages(const BenchOptions& options) {
+void warn_of_options(const Notes& notes, const Arguments& arguments, const BenchOptions& options,
+                     Projection projection) {
+    const bool single = options.repeat == 1;
+    const IdleOption own[] = {{"--repeat-gap", single, "it is for --repeat 2 and more"},
+                              {"--farthest-first", single, "it is for --repeat 2 and more"}};
+    notes.warn_of_options(arguments, own);
+    notes.warn_of_options(arguments, idle_camera_options({{projection}}));
+}
+
+Result<int> run_stages(const Arguments& arguments, const BenchOptions& options) {
     Progress progress(options.common.quiet);
     const auto bench = prepare_bench(options, progress);
     if (!bench) return bench.error();
@@ -155,6 +165,12 @@ Result<int> run_stages(const BenchOptions& options) {
     const auto others = time_picture(options, screen, visibility);
     if (!others) return others.error();
     progress.clear();
+    const Notes notes(options.common.quiet, progress);
+    warn_of_options(notes, arguments, options, bench->camera.projection);
+    ViewNotes view;
+    view.add({subject_of(bench->scene), merge_cameras(bench->scene, options.camera), bench->camera,
+              screen.counts(), !sees_anything(visibility)});
+    view.print(notes, "the picture is blank");
     const auto rows = report_rows(options, *bench, screen, *times, *others);
     if (options.common.stats) fmt::print(stderr, "{}", to_table(rows));
     Status done = print(options.common.json ? to_json(to_object(rows)) + "\n" : to_table(rows));
@@ -167,7 +183,7 @@ Result<int> run(const Arguments& arguments) {
     if (!job) return job.error();
     if (job->table) return run_table(*job->table);
     if (job->peers) return run_peers(*job->peers, job->bench);
-    return run_stages(job->bench);
+    return run_stages(arguments, job->bench);
 }
 
 const std::array kBenchRows = {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "notes.hpp"
 #include "report.hpp"
 #include "sightline/generate.hpp"
 #include "tessellate.hpp"
@@ -55,7 +56,7 @@ Result<Scene> grow(const BenchOptions& options, Scene scene, const Camera& camer
 }
 
 /// The same camera, near and far fitted to what the scene has become.
-Result<Camera> refit(const Camera& camera, CameraOptions chosen, const Box& bounds) {
+Result<Camera> refit(const Camera& camera, CameraOptions chosen, const Scene& scene) {
     chosen.eye = camera.eye;
     chosen.target = camera.target;
     chosen.direction = std::nullopt;
@@ -63,7 +64,7 @@ Result<Camera> refit(const Camera& camera, CameraOptions chosen, const Box& boun
     if (!camera.is_perspective()) {
         chosen.ortho_height = camera.view_height * chosen.zoom.value_or(1);
     }
-    return make_camera(chosen, bounds, camera.resolution);
+    return make_camera(chosen, scene, camera.resolution);
 }
 
 }  // namespace
@@ -74,6 +75,7 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
     progress.stage("loading");
     Result<Scene> loaded = load(options);
     if (!loaded) return loaded.error();
+    Notes(options.common.quiet, progress).warn_of_files(*loaded);
     if (!loaded->motions.empty()) *loaded = posed(*loaded, 0);
     if (!options.algorithm->quadrics) {
         tessellate_for(fmt::format("'{}' takes triangles only", options.algorithm->name), *loaded,
@@ -87,12 +89,12 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
         merge_cameras(loaded->camera.value_or(CameraOptions{}), options.camera), loaded->offset);
     bench.own_camera = !says_nothing(own);
     const CameraOptions chosen = camera_options(own, loaded->bounds);
-    auto camera = make_camera(chosen, loaded->bounds, options.resolution);
+    auto camera = make_camera(chosen, *loaded, options.resolution);
     if (!camera) return camera.error();
     Result<Scene> scene = grow(options, std::move(*loaded), *camera);
     if (!scene) return scene.error();
     if (options.subdivide > 0 || options.repeat > 1) {
-        camera = refit(*camera, chosen, scene->bounds);
+        camera = refit(*camera, chosen, *scene);
         if (!camera) return camera.error();
     }
     bench.scene = std::move(*scene);

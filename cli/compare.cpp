@@ -11,6 +11,7 @@
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "tessellate.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -213,6 +214,17 @@ int judge(const Comparison& comparison) {
     return status;
 }
 
+/// Warns of what a view hides from its user.
+void warn(const Notes& notes, const Arguments& arguments, const CompareOptions& options,
+          const ScreenScene& screen, const Comparison& comparison) {
+    notes.warn_of_files(screen.scene());
+    notes.warn_of_options(arguments, idle_camera_options({{screen.camera().projection}}));
+    ViewNotes view;
+    view.add({subject_of(screen.scene()), merge_cameras(screen.scene(), options.camera),
+              screen.camera(), screen.counts(), !sees_anything(comparison.canonical)});
+    view.print(notes, "the picture is blank");
+}
+
 Result<int> run(const Arguments& arguments) {
     const Result<CompareOptions> options = read_options(arguments);
     if (!options) return options.error();
@@ -231,6 +243,7 @@ Result<int> run(const Arguments& arguments) {
     const double project_ms = watch.lap();
     const auto comparison = compare(*options, *screen, progress);
     if (!comparison) return comparison.error();
+    warn(Notes(options->common.quiet, progress), arguments, *options, *screen, *comparison);
     if (options->difference) {
         const auto picture = difference_picture(comparison->canonical, comparison->marks);
         if (Status done = write_color_png(options->difference->path, picture); !done) {

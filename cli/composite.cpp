@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "errors.hpp"
+#include "notes.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
@@ -133,6 +134,12 @@ void note_size(const ExrPicture& picture, Summary& summary) {
     }
 }
 
+bool is_blank(const ExrPicture& picture) {
+    if (const auto* deep = std::get_if<DeepImage>(&picture)) return deep->samples.empty();
+    return std::ranges::none_of(std::get<FlatPicture>(picture).depth.pixels,
+                                [](float depth) { return std::isfinite(depth); });
+}
+
 std::vector<Row> report_rows(const Summary& summary, const std::vector<std::string>& paths) {
     std::vector<Row> rows = {
         {"load_ms", "load", milliseconds(summary.load), "ms"},
@@ -183,6 +190,11 @@ Result<int> run(const Arguments& arguments) {
     if (Status done = write_picture(options->output, *joined); !done) return done.error();
     summary.write = watch.lap();
     progress.clear();
+    const Notes notes(options->common.quiet, progress);
+    if (is_blank(*joined))
+        notes.warn("the picture is blank: no file has a depth or a sample anywhere");
+    const IdleOption own[] = {{"--flatten", !summary.deep, "flat files have nothing to flatten"}};
+    notes.warn_of_options(arguments, own);
     if (Status told = report(summary, *options); !told) return told.error();
     return 0;
 }

@@ -11,6 +11,7 @@
 #include "sightline/sightline.hpp"
 #include "tessellate.hpp"
 #include "trace_options.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -127,6 +128,35 @@ std::vector<Row> report_rows(const Times& times, const Drawing& drawing,
     };
 }
 
+// -- what a user should know ------------------------------------------------------------------
+
+void warn_of_options(const Notes& notes, const Arguments& arguments,
+                     const DrawCommandOptions& options, const Camera& camera) {
+    const bool no_lines = options.trace.edges.empty() && !options.guides;
+    const IdleOption own[] = {
+        {"--crease-angle", !options.trace.edges.has(EdgeKind::crease), "no creases are drawn"},
+        {"--hidden", options.trace.hidden && options.trace.edges.empty(), "no edges are drawn"},
+        {"--stroke", no_lines, "no lines are drawn"},
+        {"--sort", no_lines, "no lines are drawn"},
+        {"--vanishing-points", !camera.is_perspective(), "a parallel view has none"},
+        {"--background", options.drawing.file.format == VectorFormat::dxf, "a DXF has none"},
+    };
+    notes.warn_of_options(arguments, own);
+    notes.warn_of_options(arguments, idle_camera_options({{camera.projection}}));
+}
+
+void warn_of_view(const Notes& notes, const DrawCommandOptions& options, const Scene& scene,
+                  const ScreenScene& page, bool blank) {
+    if (blank && options.trace.edges.empty() && options.trace.fill == FillStyle::none) {
+        notes.warn("the drawing is blank: neither --edges nor --fill are to be drawn");
+        return;
+    }
+    ViewNotes view;
+    view.add({subject_of(scene), merge_cameras(scene, options.camera), page.camera(), page.counts(),
+              blank});
+    view.print(notes, "the drawing is blank");
+}
+
 Result<int> run(const Arguments& arguments) {
     Result<DrawCommandOptions> parsed = read_options(arguments);
     if (!parsed) return parsed.error();
@@ -164,6 +194,12 @@ Result<int> run(const Arguments& arguments) {
     if (!done) return done.error();
     times.write = watch.lap();
     progress.clear();
+    const Notes notes(options.common.quiet, progress);
+    warn_of_options(notes, arguments, options, *camera);
+    warn_of_view(notes, options, *scene, *page,
+                 written.visible_paths + written.hidden_paths + drawing->regions.size() +
+                         drawing->guides.size() ==
+                     0);
     const auto rows = report_rows(times, *drawing, written);
     if (Status told = print_rows(rows, options.common.stats, options.common.json); !told)
         return told.error();

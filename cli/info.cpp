@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -91,8 +92,13 @@ void json_scene(const Scene& scene, Value::Object& object) {
     object.emplace_back("quadrics", std::uint64_t{scene.quadrics.size()});
     object.emplace_back("polygons", scene.counts.polygons);
     object.emplace_back("vertices", std::uint64_t{scene.positions.size()});
+    object.emplace_back("joined_vertices", scene.counts.joined_positions);
+    object.emplace_back("equal_faces", scene.counts.equal_faces);
     object.emplace_back("degenerate_triangles", scene.counts.degenerate_triangles);
     object.emplace_back("ignored_primitives", scene.counts.ignored_primitives);
+    Value::List notes;
+    for (const std::string& note : scene.notes) notes.emplace_back(note);
+    object.emplace_back("notes", notes);
     object.emplace_back("lights", std::uint64_t{scene.lights.size()});
     object.emplace_back("bounds", Value::Object{{"min", scene.bounds.lo + scene.offset},
                                                 {"max", scene.bounds.hi + scene.offset}});
@@ -175,6 +181,8 @@ std::string scene_text(const Scene& scene) {
         {"", "surfaces that are not polygons", std::uint64_t{scene.quadrics.size()}, ""},
         {"", "polygons", scene.counts.polygons, ""},
         {"", "vertices", std::uint64_t{scene.positions.size()}, ""},
+        {"", "of them joined to others", scene.counts.joined_positions, ""},
+        {"", "polygons that equal others", scene.counts.equal_faces, ""},
         {"", "degenerate triangles", scene.counts.degenerate_triangles, ""},
         {"", "points and lines ignored", scene.counts.ignored_primitives, ""},
         {"", "lights", std::uint64_t{scene.lights.size()}, ""},
@@ -230,6 +238,12 @@ Result<int> run(const Arguments& arguments) {
     if (!scene->motions.empty()) *scene = posed(*scene, 0);
     const auto camera = camera_for(*scene, options->camera, options->resolution);
     if (!camera) return camera.error();
+    const Notes notes(options->common.quiet, progress);
+    notes.warn_of_files(*scene);
+    notes.warn_of_options(arguments, idle_camera_options({{camera->projection}}));
+    ViewNotes view;
+    view.add({subject_of(*scene), merge_cameras(*scene, options->camera), *camera, {}});
+    view.print(notes, "the picture is blank");
     progress.clear();
     if (options->common.stats) {
         fmt::print(stderr, "{}",

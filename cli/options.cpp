@@ -20,6 +20,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAnyNumber{-kInfinity, kInfinity};
 constexpr Range kPositive{0, kInfinity, true, true};
+/// Of --weld: beyond it shapes that can be seen would change.
+constexpr double kLargestWeld = 0.01;
 
 constexpr std::array kCameraRows = {
     Option{"--eye", "X,Y,Z", "where the camera stands"},
@@ -41,6 +43,9 @@ constexpr std::array kCameraRows = {
 
 constexpr std::array kModelRows = {
     Option{"--format", "NAME", "format of the models (obj, ply, ...); needed for '-'"},
+    Option{"--weld", "FRACTION",
+           "join corners on open edges no further apart than this part of their object's size "
+           "(default: 2^-20, about 9.5e-7; 0: only equal ones)"},
 };
 
 constexpr std::array kCommonRows = {
@@ -243,9 +248,12 @@ CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& ove
     return merged;
 }
 
+CameraOptions merge_cameras(const Scene& scene, const CameraOptions& asked) {
+    return merge_cameras(scene.camera.value_or(CameraOptions{}), asked);
+}
+
 Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked, Resolution resolution) {
-    const CameraOptions options = merge_cameras(scene.camera.value_or(CameraOptions{}), asked);
-    return make_camera(options, scene, resolution);
+    return make_camera(merge_cameras(scene, asked), scene, resolution);
 }
 
 Resolution read_resolution(OptionReader& reader, Resolution fallback, std::uint64_t max_pixels) {
@@ -297,6 +305,11 @@ Models read_models(OptionReader& reader, bool required) {
         }
         models.options.format = *format;
     }
+    models.options.weld =
+        reader
+            .number("--weld", {0, kLargestWeld},
+                    fmt::format("a part of the size from 0 to {}, as in --weld 1e-5", kLargestWeld))
+            .value_or(kWeldTolerance);
     if (std::find(models.paths.begin(), models.paths.end(), "") != models.paths.end()) {
         reader.fail(wrong_use("the name of a model is empty; name a file, as in bunny.obj"));
     }

@@ -102,6 +102,9 @@ struct CommonOptions {
 /// too much (eye, target and a direction or view), what `under` said gives way.
 [[nodiscard]] CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& over);
 
+/// The same with the camera of a loaded scene's file, if it has one.
+[[nodiscard]] CameraOptions merge_cameras(const Scene& scene, const CameraOptions& asked);
+
 /// The camera of a loaded scene: the command line over that of a scene file. It is fitted to all
 /// frames of what moves.
 [[nodiscard]] Result<Camera> camera_for(const Scene& scene, const CameraOptions& asked,

@@ -8,6 +8,7 @@
 #include "plot_subject.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -22,16 +23,14 @@ struct Times {
 
 void warn_if_buried(const PlotCommandOptions& options, const std::vector<PlotField>& fields,
                     const PlotSubject& subject, Progress& progress) {
-    if (!options.from || options.common.quiet) return;
+    if (!options.from) return;
     const double z = subject.placed ? -options.from->z : options.from->z;
     for (const PlotField& field : fields) {
         const double ground = field.make()(options.from->x, z);
         if (!(ground > options.from->y)) continue;
-        progress.clear();
-        fmt::print(stderr,
-                   "sightline: warning: --from: the point is below the ground, which is at {:g} "
-                   "there\n",
-                   ground);
+        Notes(options.common.quiet, progress)
+            .warn(fmt::format("--from: the point is below the ground, which is at {:g} there",
+                              ground));
     }
 }
 
@@ -68,8 +67,8 @@ std::vector<Row> report_rows(const Times& times, const HeightGrid& grid, const D
 /// A plot that is being made, stage by stage.
 class Plot {
 public:
-    Plot(PlotCommandOptions options, Progress& progress)
-        : options_(std::move(options)), progress_(progress) {}
+    Plot(const Arguments& arguments, PlotCommandOptions options, Progress& progress)
+        : arguments_(arguments), options_(std::move(options)), progress_(progress) {}
 
     Result<int> run() {
         progress_.stage("loading");
@@ -200,12 +199,33 @@ private:
         if (!done) return done.error();
         times_.write = watch_.lap();
         progress_.clear();
+        warn();
         const auto rows = report_rows(times_, grid_, drawing_, written);
         if (Status told = print_rows(rows, options_.common.stats, options_.common.json); !told)
             return told.error();
         return 0;
     }
 
+    /// Of what had no effect.
+    void warn() {
+        const Notes notes(options_.common.quiet, progress_);
+        const IdleOption own[] = {
+            {"--no-outline", !options_.has_implicit(), "only implicit surfaces have outlines"},
+            {"--axes", options_.image_space, "--image-space draws none"},
+            {"--background", options_.drawing.file.format == VectorFormat::dxf, "a DXF has none"},
+        };
+        notes.warn_of_options(arguments_, own);
+        notes.warn_of_options(arguments_, idle_camera_options({{camera_.projection}}));
+        if (std::ranges::any_of(drawing_.lines.kind,
+                                [](EdgeKind kind) { return kind != EdgeKind::axis; }))
+            return;
+        const DepthRange depths = depths_of_box(subject_.box(), camera_);
+        notes.warn(fmt::format(
+            "the plot is blank: no curve is in view; its box lies at depths {:.4g} to {:.4g}",
+            depths.nearest, depths.farthest));
+    }
+
+    const Arguments& arguments_;
     PlotCommandOptions options_;
     Progress& progress_;
     Stopwatch watch_;
@@ -222,7 +242,7 @@ Result<int> run(const Arguments& arguments) {
     Result<PlotCommandOptions> options = read_plot_options(arguments);
     if (!options) return options.error();
     Progress progress(options->common.quiet);
-    return Plot(std::move(*options), progress).run();
+    return Plot(arguments, std::move(*options), progress).run();
 }
 
 const std::array kGroups = {

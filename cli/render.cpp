@@ -189,7 +189,7 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
         {"triangles", "triangles", counts.triangles, ""},
         {"quadrics", "surfaces that are not polygons", std::uint64_t{scene.quadrics.size()}, ""},
         {"degenerate_triangles", "degenerate triangles dropped", counts.degenerate, ""},
-        {"back_facing", "triangles that face away", counts.back_facing, ""},
+        {"back_facing", "triangles that face away", rendered.back_facing, ""},
         {"culled", "triangles culled by side", counts.culled, ""},
         {"culled_percent", "share culled", std::round(100 * culled) / 100, "%"},
         {"outside", "triangles outside of the view", counts.outside, ""},
@@ -211,17 +211,53 @@ std::vector<Row> report_rows(const RenderOptions& options, Shading shading, cons
     return rows;
 }
 
-void warn_about_translucency(const RenderOptions& options, const Scene& scene, Progress& progress) {
-    if (options.common.quiet || !has_translucent_faces(scene)) return;
-    if (options.algorithm->open_layers != nullptr) return;
+// -- what a user should know -------------------------------------------------------------------
+
+void warn_about_translucency(const Notes& notes, const RenderOptions& options, const Scene& scene) {
+    if (!has_translucent_faces(scene) || options.algorithm->open_layers != nullptr) return;
     const auto* blending = std::ranges::find_if(algorithms(), [](const Algorithm& a) {
                                return a.open_layers != nullptr;
                            }).base();
-    progress.clear();
-    fmt::print(stderr,
-               "sightline: warning: '{}' can't blend: translucent faces are drawn opaque; take "
-               "--algorithm {}\n",
-               options.algorithm->name, blending->name);
+    notes.warn(
+        fmt::format("'{}' can't blend: translucent faces are drawn opaque; take --algorithm {}",
+                    options.algorithm->name, blending->name));
+}
+
+/// Those of all frames. `own` is the camera of the scene's file.
+std::vector<Projection> projections_of(const RenderOptions& options,
+                                       const std::optional<CameraOptions>& own) {
+    std::vector<Projection> projections;
+    const auto add = [&](const CameraOptions& camera) {
+        projections.push_back(
+            merge_cameras(merge_cameras(own.value_or(CameraOptions{}), camera), options.camera)
+                .projection.value_or(Projection::perspective));
+    };
+    if (options.frames.path.empty()) add({});
+    for (const CameraOptions& camera : options.frames.path) add(camera);
+    return projections;
+}
+
+void warn_of_options(const Notes& notes, const Arguments& arguments, const RenderOptions& options,
+                     const std::optional<CameraOptions>& own_camera) {
+    const auto writes = [&](auto... contents) {
+        return std::ranges::any_of(options.outputs, [&](const PictureOutput& p) {
+            return ((p.content == contents) || ...);
+        });
+    };
+    using enum PictureContent;
+    const bool shades = writes(color) || (writes(normals));
+    const bool makes_normals = options.shading && is_smooth(*options.shading) && shades;
+    const IdleOption own[] = {
+        {"--crease-angle", !makes_normals, "normals are made for --shading gouraud and phong only"},
+        {"--samples", !writes(color, matte), "maps show what is at the pixels' centres"},
+        {"--background", !writes(color) || options.deep,
+         options.deep ? "a deep picture has none" : "only a picture has one"},
+        {"--shading", !shades, "only a picture is shaded"},
+        {"--opacity", !writes(color, matte), "maps show the nearest face"},
+        {"--holdout", !writes(color, matte), "maps show all faces"},
+    };
+    notes.warn_of_options(arguments, own);
+    notes.warn_of_options(arguments, idle_camera_options(projections_of(options, own_camera)));
 }
 
 Result<int> run(const Arguments& arguments) {
@@ -229,12 +265,15 @@ Result<int> run(const Arguments& arguments) {
     if (!parsed) return parsed.error();
     const RenderOptions& options = *parsed;
     Progress progress(options.common.quiet);
+    const Notes notes(options.common.quiet, progress);
     const Stopwatch watch;
 
     if (options.stream) {
-        const auto rows = render_stream(options, progress);
-        if (!rows) return rows.error();
-        if (Status told = print_rows(*rows, options.common.stats, options.common.json); !told)
+        const auto streamed = render_stream(options, notes, progress);
+        if (!streamed) return streamed.error();
+        warn_of_options(notes, arguments, options, streamed->own_camera);
+        if (Status told = print_rows(streamed->rows, options.common.stats, options.common.json);
+            !told)
             return told.error();
         return 0;
     }
@@ -242,12 +281,15 @@ Result<int> run(const Arguments& arguments) {
     const Result<Scene> scene = load(options, progress);
     if (!scene) return scene.error();
     const Shading shading = shading_for(options, has_file_normals(*scene));
-    warn_about_translucency(options, *scene, progress);
+    notes.warn_of_files(*scene);
+    warn_of_options(notes, arguments, options, scene->camera);
+    warn_about_translucency(notes, options, *scene);
     const double load_ms = watch.ms();
 
     const auto rendered = render_frames(options, shading, *scene, progress);
     if (!rendered) return rendered.error();
     progress.clear();
+    rendered->views.print(notes, "the picture is blank");
     const auto rows = report_rows(options, shading, *scene, load_ms, *rendered);
     if (Status done = print_rows(rows, options.common.stats, options.common.json); !done)
         return done.error();

@@ -146,7 +146,8 @@ Result<Drawn> draw_outputs(const RenderOptions& options, const View& view,
         {view.shading, linear_color(options.background), options.common.threads},
         &drawn.counters,
         [&](DrawStage stage, std::uint32_t rows_done) { watch.enter(stage, rows_done); },
-        view.tree};
+        view.tree,
+        &drawn.anything_seen};
     Status done = draw_mattes(view, *options.algorithm, drawing, files);
     if (done) done = draw(view.screen, *options.algorithm, drawing, files);
     done = batch.publish(done);

@@ -78,6 +78,7 @@ void read_size(OptionReader& reader, RenderOptions& options);
 struct Drawn {
     double resolve = 0, shade = 0, write = 0;
     std::vector<Counter> counters;
+    bool anything_seen = false;
 };
 
 /// What to draw.

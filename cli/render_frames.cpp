@@ -123,37 +123,38 @@ void check_name(OptionReader& reader, const Output& output, bool frames) {
 
 // -- the work ----------------------------------------------------------------------------------
 
+struct FrameCamera {
+    CameraOptions options;
+    Camera camera;
+};
+
 /// The cameras of the frames that are drawn.
-Result<std::vector<Camera>> find_cameras(const RenderOptions& options, const Scene& scene) {
+Result<std::vector<FrameCamera>> find_cameras(const RenderOptions& options, const Scene& scene) {
     const FrameOptions& frames = options.frames;
     const CameraOptions own = scene.camera.value_or(CameraOptions{});
-    const auto camera = [&](const CameraOptions& asked) {
-        return make_camera(asked, scene, options.resolution);
-    };
-    std::vector<Camera> cameras;
+    const CameraOptions start = merge_cameras(own, options.camera);
+    std::vector<FrameCamera> cameras;
     if (frames.path.empty()) {
-        const auto still = camera_for(scene, options.camera, options.resolution);
+        const auto still = make_camera(start, scene, options.resolution);
         if (!still) return still.error();
-        cameras.assign(frames.end - frames.first, *still);
+        cameras.assign(frames.end - frames.first, {start, *still});
         if (!frames.orbit) return cameras;
     }
     cameras.resize(frames.end - frames.first);
-    const CameraOptions start = merge_cameras(own, options.camera);
     for (std::uint32_t k = frames.first; k < frames.end; ++k) {
-        Camera& here = cameras[k - frames.first];
-        CameraOptions asked;
+        FrameCamera& here = cameras[k - frames.first];
         if (frames.orbit) {
             const auto [axis, from, to] = *frames.orbit;
-            asked = orbited(start, here, axis, from + (to - from) * k / frames.count);
+            here.options = orbited(start, here.camera, axis, from + (to - from) * k / frames.count);
         } else {
-            asked = merge_cameras(merge_cameras(own, frames.path[k]), options.camera);
+            here.options = merge_cameras(merge_cameras(own, frames.path[k]), options.camera);
         }
-        auto made = camera(asked);
+        auto made = make_camera(here.options, scene, options.resolution);
         if (!made) {
             return Error{made.error().kind,
                          fmt::format("frame {}: {}", k + 1, made.error().message)};
         }
-        here = *made;
+        here.camera = *made;
     }
     return cameras;
 }
@@ -206,7 +207,6 @@ void add_counters(std::vector<Counter>& sum, const std::vector<Counter>& frame) 
 void add(Rendered& sum, const ProjectCounts& counts, const Drawn& drawn) {
     sum.counts.triangles = counts.triangles;
     sum.counts.degenerate = counts.degenerate;
-    sum.counts.back_facing += counts.back_facing;
     sum.counts.culled += counts.culled;
     sum.counts.outside += counts.outside;
     sum.counts.clipped += counts.clipped;
@@ -261,13 +261,13 @@ private:
         return pose_;
     }
 
-    Status draw(std::uint32_t k, const Camera& camera) {
+    Status draw(std::uint32_t k, const FrameCamera& from) {
         Stopwatch watch;
         const Scene& scene = pose(k);
         sum_.pose += watch.lap();
         progress_.stage("projecting");
         const ProjectOptions projecting{options_.cull, options_.common.threads};
-        if (Status done = project(scene, camera, projecting, screen_); !done) return done;
+        if (Status done = project(scene, from.camera, projecting, screen_); !done) return done;
         sum_.project += watch.lap();
         std::vector<PictureOutput> pictures = options_.outputs;
         if (options_.frames.count > 0) {
@@ -279,6 +279,12 @@ private:
         const auto drawn = draw_outputs(options_, view, pictures, progress_);
         if (!drawn) return drawn.error();
         add(sum_, screen_.counts(), *drawn);
+        sum_.views.add(
+            {subject_of(scene), from.options, from.camera, screen_.counts(), !drawn->anything_seen},
+            options_.frames.count > 0 ? k + 1 : 0);
+        if (options_.common.stats || options_.common.json) {
+            sum_.back_facing += count_back_facing(scene, from.camera, options_.common.threads);
+        }
         return success();
     }
 

@@ -8,6 +8,7 @@
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "render_frame.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 
@@ -27,9 +28,11 @@ void check_frame_outputs(OptionReader& reader, const RenderOptions& options,
 /// What the frames took and found, in sum: times in milliseconds.
 struct Rendered {
     double tree = 0, pose = 0, project = 0;
-    ProjectCounts counts;          ///< `triangles` and `degenerate` are those of the last frame
-    std::uint64_t candidates = 0;  ///< triangles that could have been culled
+    ProjectCounts counts;           ///< `triangles` and `degenerate` are those of the last frame
+    std::uint64_t back_facing = 0;  ///< only with --stats or --json
+    std::uint64_t candidates = 0;   ///< triangles that could have been culled
     Drawn drawn;
+    ViewNotes views;
 };
 
 /// Draws all frames into their files. Frames that are finished stay after an error, which names the

@@ -1,24 +1,20 @@
-// Every model is loaded twice: once for its bounds, which decide the offset of the whole and the
-// camera, and once for the picture; three times where the whole has an offset. In between nothing
-// of it stays.
+// Every model is loaded once for the plan, once more where it may share planes with others, once
+// more where the eye is close to the scene, for the near plane is then fitted to what is in view,
+// and once for the picture; all once more where they lie far from the origin, for then the plan is
+// made relative to the offset of the whole. In between only what the plan keeps of it stays.
 #include "render_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
+#include <memory>
+#include <utility>
 
 #include "errors.hpp"
 #include "suggest.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
-
-/// What is known of all parts before the first is drawn.
-struct Survey {
-    /// Empty, but for the box and the offset of all parts and the camera of the first that has one.
-    Scene frame;
-    bool has_normals = false;
-};
 
 /// Times and sizes of a run.
 struct StreamTotals {
@@ -26,68 +22,90 @@ struct StreamTotals {
     std::uint64_t triangles = 0, largest = 0, objects = 0;
 };
 
-/// A part in the coordinates of the whole.
+/// A part relative to the offset of the whole.
 Result<Scene> load_part(const RenderOptions& options, std::size_t k, glm::dvec3 offset) {
     const std::vector<std::string> path{options.models.paths[k]};
     LoadOptions loading = options.models.options;
     loading.offset = offset;
+    loading.find_sheets = false;
     return load_scene(path, loading);
 }
 
-void include(const Scene& part, Survey& survey) {
-    Box& box = survey.frame.reach;
-    if (!part.reach.empty())
-        box = box.empty() ? part.reach
-                          : Box{glm::min(box.lo, part.reach.lo), glm::max(box.hi, part.reach.hi)};
-    if (!survey.frame.camera) survey.frame.camera = part.camera;
-    survey.has_normals = survey.has_normals || has_file_normals(part);
+void include(const Box& part, Box& whole) {
+    if (part.empty()) return;
+    whole = whole.empty() ? part : Box{glm::min(whole.lo, part.lo), glm::max(whole.hi, part.hi)};
 }
 
-Result<Survey> survey_parts(const RenderOptions& options, glm::dvec3 offset, Progress& progress) {
-    Survey survey;
-    survey.frame.offset = offset;
+/// Looks at all parts.
+Status survey_parts(const RenderOptions& options, glm::dvec3 offset, Progress& progress,
+                    StreamPlan& plan) {
     const auto count = static_cast<unsigned>(options.models.paths.size());
     for (unsigned k = 0; k < count; ++k) {
         progress.stage("looking at part", k + 1, count);
         const Result<Scene> part = load_part(options, k, offset);
         if (!part) return part.error();
-        include(*part, survey);
+        if (part->camera && plan.frame().camera)
+            return failure("{}: camera: another scene file has one already; keep one",
+                           options.models.paths[k]);
+        plan.survey(*part);
     }
-    survey.frame.bounds = survey.frame.reach;
-    return survey;
+    plan.finish_survey();
+    return success();
 }
 
-/// In the coordinates of the files, and where these are far from the origin again relative to the
-/// offset that the whole has then.
-Result<Survey> survey_parts(const RenderOptions& options, Progress& progress) {
-    auto survey = survey_parts(options, glm::dvec3(0), progress);
-    if (!survey) return survey;
-    const glm::dvec3 offset = offset_for(survey->frame.reach);
-    return offset == glm::dvec3(0) ? std::move(survey) : survey_parts(options, offset, progress);
+/// Looks at all parts, and again at those that may share a plane with another one.
+Result<std::unique_ptr<StreamPlan>> make_plan(const RenderOptions& options, Progress& progress) {
+    auto plan = std::make_unique<StreamPlan>();
+    Status done = survey_parts(options, glm::dvec3(0), progress, *plan);
+    if (!done) return done.error();
+    const glm::dvec3 offset = offset_for(plan->frame().reach);
+    if (offset != glm::dvec3(0)) {
+        plan = std::make_unique<StreamPlan>();
+        done = survey_parts(options, offset, progress, *plan);
+        if (!done) return done.error();
+    }
+    const auto count = static_cast<unsigned>(options.models.paths.size());
+    for (unsigned k = 0; k < count; ++k) {
+        if (!plan->is_shared(k)) continue;
+        progress.stage("comparing part", k + 1, count);
+        Result<Scene> part = load_part(options, k, offset);
+        if (!part) return part.error();
+        plan->compare(k, *part);
+    }
+    plan->finish_comparison();
+    return plan;
 }
 
 class StreamRun {
 public:
-    StreamRun(const RenderOptions& options, Progress& progress)
-        : options_(options), progress_(progress) {}
+    StreamRun(const RenderOptions& options, const Notes& notes, Progress& progress)
+        : options_(options), notes_(notes), progress_(progress) {}
 
-    Result<std::vector<Row>> run() {
+    Result<Streamed> run() {
         Stopwatch watch;
-        const auto survey = survey_parts(options_, progress_);
-        if (!survey) return survey.error();
-        const auto camera = camera_for(survey->frame, options_.camera, options_.resolution);
+        auto plan = make_plan(options_, progress_);
+        if (!plan) return plan.error();
+        plan_ = std::move(*plan);
+        const Scene& frame = plan_->frame();
+        const CameraOptions asked =
+            relative_to(merge_cameras(frame, options_.camera), frame.offset);
+        const auto camera =
+            make_camera(asked, frame.reach, options_.resolution,
+                        [&](const Camera& view) { return depths_of_parts(view, EdgeOn::counts); });
         if (!camera) return camera.error();
+        if (failed_) return *failed_;
         totals_.load = watch.ms();
         std::vector<Output> outputs;
         for (const PictureOutput& picture : options_.outputs) outputs.push_back(picture.output);
         OutputBatch batch(std::move(outputs));
         const std::vector<PictureFile> files = files_of(options_, batch, options_.outputs);
-        const Shading shading = shading_for(options_, survey->has_normals);
+        const Shading shading = shading_for(options_, plan_->has_file_normals());
         DrawOptions drawing;
         drawing.samples_per_axis = options_.per_axis;
         drawing.shading = {shading, linear_color(options_.background), options_.common.threads};
-        StreamedPicture picture(*camera, drawing, files);
-        Status done = add_parts(picture, *camera, survey->frame.offset);
+        StreamedPicture picture(*camera, drawing, files, plan_.get());
+        Status done = plan_->set_view(*camera, {options_.cull, options_.common.threads});
+        if (done) done = add_parts(picture, *camera);
         watch.lap();
         progress_.stage("writing");
         if (done) done = picture.write();
@@ -95,28 +113,54 @@ public:
         if (!done) return done.error();
         totals_.write = watch.ms();
         progress_.clear();
-        return rows();
+        const auto depths = [&](const Camera& view, EdgeOn edge_on) {
+            return depths_of_parts(view, edge_on);
+        };
+        ViewNotes view;
+        view.add({{reach_, depths}, asked, *camera, counts_, !picture.anything_seen()});
+        view.print(notes_, "the picture is blank");
+        return Streamed{rows(), plan_->frame().camera};
     }
 
 private:
-    Status add_parts(StreamedPicture& picture, const Camera& camera, glm::dvec3 offset) {
+    /// Of all parts, which are loaded for it.
+    DepthRange depths_of_parts(const Camera& camera, EdgeOn edge_on) {
+        DepthRange range;
+        const auto count = static_cast<unsigned>(options_.models.paths.size());
+        for (unsigned k = 0; k < count && !failed_; ++k) {
+            progress_.stage("measuring part", k + 1, count);
+            const Result<Scene> part = load_part(options_, k, plan_->frame().offset);
+            if (part) {
+                range.take_in(depths_in_view(*part, camera, edge_on));
+            } else {
+                failed_ = part.error();
+            }
+        }
+        return range;
+    }
+
+    Status add_parts(StreamedPicture& picture, const Camera& camera) {
         const auto count = static_cast<unsigned>(options_.models.paths.size());
         ScreenScene screen;
         for (unsigned k = 0; k < count; ++k) {
             progress_.stage("drawing part", k + 1, count);
             Stopwatch watch;
-            Result<Scene> part = load_part(options_, k, offset);
+            Result<Scene> part = load_part(options_, k, plan_->frame().offset);
             if (!part) return part.error();
             if (!part->motions.empty()) {
                 return wrong_use("--stream: '{}' has moving objects; leave out --stream",
                                  options_.models.paths[k]);
             }
+            notes_.warn_of_files(*part);
             if (options_.shading && is_smooth(*options_.shading))
                 make_normals(*part, options_.crease_angle);
+            plan_->adopt(k, *part);
             totals_.load += watch.lap();
             const ProjectOptions projecting{options_.cull, options_.common.threads};
             if (Status done = project(*part, camera, projecting, screen); !done) return done;
+            plan_->adopt(k, screen);
             totals_.project += watch.lap();
+            note(*part, screen.counts());
             if (Status done = picture.add(screen); !done) return done;
             totals_.resolve += watch.lap();
             const std::uint64_t triangles = part->triangle_count();
@@ -125,6 +169,13 @@ private:
             totals_.objects += part->objects.size();
         }
         return success();
+    }
+
+    void note(const Scene& part, const ProjectCounts& counts) {
+        include(part.reach, reach_);
+        counts_.triangles += counts.triangles;
+        counts_.degenerate += counts.degenerate;
+        counts_.outside += counts.outside;
     }
 
     [[nodiscard]] std::vector<Row> rows() const {
@@ -144,8 +195,13 @@ private:
     }
 
     const RenderOptions& options_;
+    const Notes& notes_;
     Progress& progress_;
+    std::unique_ptr<StreamPlan> plan_;
     StreamTotals totals_;
+    Box reach_;  // of the parts that were drawn
+    ProjectCounts counts_;
+    std::optional<Error> failed_;  // of a part that was looked at again
 };
 
 }  // namespace
@@ -173,8 +229,9 @@ void read_stream(OptionReader& reader, RenderOptions& options) {
            "standard input can't be read twice; name files");
 }
 
-Result<std::vector<Row>> render_stream(const RenderOptions& options, Progress& progress) {
-    return StreamRun(options, progress).run();
+Result<Streamed> render_stream(const RenderOptions& options, const Notes& notes,
+                               Progress& progress) {
+    return StreamRun(options, notes, progress).run();
 }
 
 }  // namespace sightline::cli

@@ -1,8 +1,10 @@
 // `sightline render --stream`: one model after the other, so that their sum need not fit in memory.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "notes.hpp"
 #include "progress.hpp"
 #include "render_frame.hpp"
 #include "report.hpp"
@@ -12,8 +14,13 @@ namespace sightline::cli {
 /// --stream, and what does not go with it. After all other options.
 void read_stream(OptionReader& reader, RenderOptions& options);
 
-/// Draws the picture; what --stats and --json tell of it.
-[[nodiscard]] Result<std::vector<Row>> render_stream(const RenderOptions& options,
-                                                     Progress& progress);
+struct Streamed {
+    std::vector<Row> rows;                    ///< what --stats and --json tell
+    std::optional<CameraOptions> own_camera;  ///< of the first scene file that has one
+};
+
+/// Draws the picture, and says what a user should know of the parts and the view.
+[[nodiscard]] Result<Streamed> render_stream(const RenderOptions& options, const Notes& notes,
+                                             Progress& progress);
 
 }  // namespace sightline::cli

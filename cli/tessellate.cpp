@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include "notes.hpp"
 
 namespace sightline::cli {
 
@@ -11,11 +11,10 @@ void tessellate_for(std::string_view who, Scene& scene, bool quiet, Progress& pr
     const std::size_t surfaces = scene.quadrics.size();
     const std::uint32_t before = scene.triangle_count();
     scene = tessellate_quadrics(scene);
-    if (quiet) return;
-    progress.clear();
-    fmt::print(stderr, "sightline: note: {}: {} {} tessellated into {} triangles, {} around\n", who,
-               surfaces, surfaces == 1 ? "surface is" : "surfaces are",
-               scene.triangle_count() - before, kQuadricSegments);
+    Notes(quiet, progress)
+        .note(fmt::format("{}: {} {} tessellated into {} triangles, {} around", who, surfaces,
+                          surfaces == 1 ? "surface is" : "surfaces are",
+                          scene.triangle_count() - before, kQuadricSegments));
 }
 
 }  // namespace sightline::cli

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "notes.hpp"
 #include "sightline/load.hpp"
 #include "tessellate.hpp"
 
@@ -21,6 +22,7 @@ Result<Scene> load_for_drawing(const Models& models, bool quiet, Progress& progr
     progress.stage("loading");
     Result<Scene> scene = load_scene(models.paths, models.options);
     if (!scene) return scene;
+    Notes(quiet, progress).warn_of_files(*scene);
     if (!scene->motions.empty()) *scene = posed(*scene, 0);
     tessellate_for("a drawing is made of triangles", *scene, quiet, progress);
     return scene;

@@ -12,6 +12,7 @@
 #include "report.hpp"
 #include "sightline/sightline.hpp"
 #include "trace_options.hpp"
+#include "view_notes.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -94,6 +95,7 @@ struct Group {
 
 struct View {
     Camera camera;
+    ProjectCounts counts;
     std::vector<FaceArea> areas;  ///< of every triangle, in pixels^2
 
     /// Scene units^2 a pixel^2; 0 in perspective, where they mean nothing.
@@ -108,7 +110,7 @@ Result<View> look(const Scene& scene, const Camera& camera, const VisibleOptions
     if (!page) return page.error();
     auto areas = visible_areas(*page, options.trace);
     if (!areas) return areas.error();
-    return View{camera, std::move(*areas)};
+    return View{camera, page->counts(), std::move(*areas)};
 }
 
 std::vector<Group> group(const Scene& scene, const View& view, By by) {
@@ -287,10 +289,35 @@ std::string directions_as_json(const std::vector<DirectionRow>& rows) {
 
 // -- the command -------------------------------------------------------------------------------
 
-Result<std::string> text_of(const Scene& scene, VisibleOptions& options, Progress& progress) {
+/// Warns of what a view hides from its user.
+void warn_of_view(const Notes& notes, const Scene& scene, const VisibleOptions& options,
+                  const View& view) {
+    ViewNotes seen;
+    seen.add(
+        {subject_of(scene), merge_cameras(scene, options.camera), view.camera, view.counts,
+         std::ranges::none_of(view.areas, [](const FaceArea& area) { return area.visible > 0; })});
+    seen.print(notes, "nothing is visible");
+}
+
+void warn_of_options(const Notes& notes, const Arguments& arguments, const VisibleOptions& options,
+                     const Scene& scene) {
+    const bool around = !options.directions.empty();
+    const IdleOption own[] = {{"--by", around, "--from-directions has a row a direction"}};
+    notes.warn_of_options(arguments, own);
+    const Projection usual = around ? Projection::orthographic : Projection::perspective;
+    const std::array projections{(around ? options.camera : merge_cameras(scene, options.camera))
+                                     .projection.value_or(usual)};
+    notes.warn_of_options(arguments, idle_camera_options(projections));
+}
+
+Result<std::string> text_of(const Scene& scene, VisibleOptions& options, const Notes& notes,
+                            Progress& progress) {
     if (!options.directions.empty()) {
         const auto rows = look_around(scene, options, progress);
         if (!rows) return rows.error();
+        if (rows->back().triangles == 0) {
+            notes.warn("nothing is visible from any direction; change --near, --far or --zoom");
+        }
         return options.common.json ? directions_as_json(*rows) : directions_as_csv(*rows);
     }
     const auto camera = camera_for(scene, options.camera, options.resolution);
@@ -298,6 +325,7 @@ Result<std::string> text_of(const Scene& scene, VisibleOptions& options, Progres
     show_progress(progress, options.trace);
     const auto view = look(scene, *camera, options);
     if (!view) return view.error();
+    warn_of_view(notes, scene, options, *view);
     const std::vector<Group> groups = group(scene, *view, options.by);
     return options.common.json ? as_json(scene, *view, groups, options.by)
                                : as_csv(scene, *view, groups, options.by);
@@ -311,7 +339,9 @@ Result<int> run(const Arguments& arguments) {
     const auto scene = load_for_drawing(options->models, options->common.quiet, progress);
     if (!scene) return scene.error();
     const double load_ms = watch.lap();
-    const auto text = text_of(*scene, *options, progress);
+    const Notes notes(options->common.quiet, progress);
+    warn_of_options(notes, arguments, *options, *scene);
+    const auto text = text_of(*scene, *options, notes, progress);
     if (!text) return text.error();
     progress.clear();
     if (options->common.stats) {

@@ -8,8 +8,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,6 +46,10 @@ struct CameraOptions {
     std::optional<double> near_plane, far_plane;  ///< depths; fitted to the scene when absent
 };
 
+/// The fitted near plane of a perspective is at least this share of far. A step of z at the depth d
+/// is d^2 / near / 2^30, so at the far end 1 / 1e-5 / 2^30 = 1e-4 of far.
+inline constexpr double kLeastNear = 1e-5;
+
 inline constexpr std::uint32_t kMaxSide = 65536;  ///< largest width or height of a picture
 
 /// Size of a picture in pixels.
@@ -58,7 +64,9 @@ struct Camera {
     Resolution resolution;
     glm::dvec3 eye{0, 0, 0}, target{0, 0, -1};
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};  ///< orthonormal, right-handed
-    double fov = 40;                                        ///< vertical, degrees; perspective only
+    /// The gaze as it was said, of any length: -back is this, rounded.
+    glm::dvec3 aim{0, 0, -1};
+    double fov = 40;           ///< vertical, degrees; perspective only
     double view_height = 2;    ///< of the view plane: at depth 1 in perspective, else in units
     glm::dvec2 oblique{0, 0};  ///< shift on the page of a point one unit behind the target's plane
     double near_plane = 1, far_plane = 2;  ///< depths, near < far; near > 0 in perspective
@@ -74,19 +82,50 @@ struct Camera {
     /// Direction in the world (not normalised) along which a point is seen: from the eye to it in
     /// perspective, the direction of projection otherwise.
     [[nodiscard]] glm::dvec3 view_vector(glm::dvec3 point) const;
+    /// Whether the plane through three points contains the eye, or in parallel projections the
+    /// direction of projection: it is seen as a line. Decided exactly, on the very numbers that
+    /// stand here: the eye; `aim` in orthographic views; the view vector in oblique ones.
+    [[nodiscard]] bool sees_edge_on(const std::array<glm::dvec3, 3>& corners) const;
     /// The point of the world at a depth that projects onto a pixel coordinate.
     [[nodiscard]] glm::dvec3 unproject(glm::dvec2 pixel, double depth) const;
 };
 
-/// Decides every number of a camera. `bounds` is the box of the scene, used to fit the view and the
-/// near and far planes. Errors (bad_option): fov outside (0, 180), near not below far, eye =
-/// target, up parallel to the gaze, heights, zooms or sizes that are not positive, values not
-/// finite.
-[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
-                                         Resolution resolution);
+/// Depths from one to another; empty until something is taken in.
+struct DepthRange {
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = -std::numeric_limits<double>::infinity();
+    [[nodiscard]] bool empty() const { return nearest > farthest; }
+    void take_in(const DepthRange& other);
+    friend bool operator==(const DepthRange&, const DepthRange&) = default;
+};
 
-/// The same for a finished scene, fitted to Scene::reach. The camera is in the scene's own
-/// coordinates: eye and target are those of relative_to().
+/// Faces whose plane holds the eye cover nothing, but their edges can be drawn.
+enum class EdgeOn { counts, is_left_out };
+
+/// The depths at which a finished scene lies within the four sides of a view, whatever its near and
+/// far planes; in perspective only what is in front of the eye. Triangles are clipped by the sides;
+/// of a quadric the nearest depth is a lower bound, by little, and the farthest that of its box. Of
+/// what moves all frames count. O(triangles), on all cores; the result does not depend on their
+/// number.
+[[nodiscard]] DepthRange depths_in_view(const Scene& scene, const Camera& camera,
+                                        EdgeOn edge_on = EdgeOn::counts);
+
+/// Tells at which depths something lies within the four sides of a view.
+using DepthsInView = std::function<DepthRange(const Camera&)>;
+
+/// Decides every number of a camera. `bounds` is the box of the scene, used to fit the view and the
+/// near and far planes. In perspective, where the box reaches nearer to the eye's plane than 1e-4
+/// of the far plane, near is fitted to the nearest depth that `depths` tells for a view 0.1 %
+/// larger, if it is given; the fitted near is at least 1e-5 of the fitted far (or of a smaller one
+/// that is given), which can cut what is nearer. Errors (bad_option): fov outside (0, 180), near
+/// not below far, eye = target, up parallel to the gaze, heights, zooms or sizes that are not
+/// positive, values not finite.
+[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Box& bounds,
+                                         Resolution resolution, const DepthsInView& depths = {});
+
+/// The same for a finished scene, fitted to Scene::reach and depths_in_view(): nothing that can be
+/// seen is cut by a fitted plane, unless it is nearer than 1e-5 of far. The camera is in the
+/// scene's own coordinates: eye and target are those of relative_to().
 [[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Scene& scene,
                                          Resolution resolution);
 

@@ -47,10 +47,14 @@ struct CompositeOptions {
 
 /// Joins pictures by depth.
 ///
+/// The result has the smallest data window that holds those of all, and the display window of the
+/// first.
+///
 /// Flat ones: every pixel, with all of its channels, is that of the picture with the smallest
-/// depth; a tie goes to the earlier one, and where none sees anything the pixel of the first stays.
-/// Normals and ids are kept where all have them. Pixels are not blended: translucent ones want deep
-/// pictures.
+/// depth; a tie goes to the earlier one. Pixels with alpha 0, or without a finite depth, see
+/// nothing and don't count; where all are such the pixel of the first that has it stays, with
+/// infinite depth. Normals and ids are kept where all have them. Pixels are not blended:
+/// translucent ones want deep pictures.
 ///
 /// Deep ones: the samples of all become one tidy list in each pixel: sorted by z, without overlaps.
 /// Volumes are split where others begin or end, and what then coincides is merged (P. Hillman,
@@ -58,8 +62,9 @@ struct CompositeOptions {
 /// A merged sample has the ids of the one that absorbs most, of equals those of the first. Samples
 /// without a depth (NaN) are dropped.
 ///
-/// Precondition: at least one picture. Errors: bad_input for flat and deep ones together, different
-/// sizes or places; io when memory is short.
+/// Precondition: at least one picture. Errors: bad_input for flat and deep ones together, for
+/// pictures with neither one display window nor one data window, and for a result beyond the limits
+/// of read_exr(); io when memory is short.
 [[nodiscard]] Result<ExrPicture> composite(std::vector<ExrPicture> pictures,
                                            const CompositeOptions& options = {});
 

@@ -18,6 +18,9 @@ struct LoadOptions {
     /// Format of standard input, or an override of the extension: "obj", "ply", ... "" = by
     /// extension.
     std::string format;
+    /// Positions on open edges that are no further apart than this part of their object's size are
+    /// joined; 0: none but equal ones. See finish_scene().
+    double weld = kWeldTolerance;
     /// Limits on the parsing of a foreign file.
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;
@@ -25,6 +28,8 @@ struct LoadOptions {
     /// Scene::offset, when it is decided already: parts of a larger scene share that of the whole,
     /// offset_for() its box. 0 keeps the coordinates of the files.
     std::optional<glm::dvec3> offset;
+    /// False: Scene::sheets stay empty, for they will be those of a StreamPlan.
+    bool find_sheets = true;
 };
 
 /// Loads one or several files (models or scene.json) into one finished scene; "-" is standard input

@@ -55,10 +55,16 @@ struct Object {
     std::uint32_t first_triangle = 0, triangle_count = 0;
     std::uint32_t first_polygon = 0, polygon_count = 0;
     std::uint32_t material = 0;  ///< index into Scene::materials
+    /// Number of the file it came from, among those that were loaded together; see Sheets.
+    std::uint32_t part = 0;
     bool has_file_normals = false;
     /// Every edge is shared by exactly two faces that run along it in opposite directions, and
-    /// every connected part encloses a positive volume: only then may back faces be removed.
+    /// every connected part encloses a positive volume: only then may back faces be removed. Equal
+    /// faces count as one, which may run either way when it is there both ways round.
     bool closed = false;
+    /// Some face of it is there both ways round, so both its sides can be seen: its back faces
+    /// stay.
+    bool two_sided = false;
     /// One of its vertex colours lets something shine through.
     bool translucent_vertices = false;
 };
@@ -111,7 +117,9 @@ struct Quadric {
 
 /// Faces that are coplanar in the world, clustered once when the scene is finished. The
 /// triangles of a sheet share one plane on every screen, so that walls, decals and the halves of a
-/// quad never fight: where they meet in depth they tie exactly, and the lower id wins.
+/// quad never fight: where they meet in depth they tie exactly, and the lower id wins. They are
+/// found part by part (Object::part) and then joined as wholes, so that who has one part at a time
+/// finds the same ones; see StreamPlan.
 struct Sheets {
     AlignedVector<std::uint32_t> of_triangle;  ///< sheet of each triangle, or kNone; may be empty
     /// Triangles of sheet s: members[first[s]] .. members[first[s + 1] - 1], in ascending order.
@@ -128,12 +136,23 @@ struct Sheets {
     }
 };
 
+/// A face that is there several times: polygons of one object with the same corners joined by the
+/// same sides, run through in whatever direction. They are one face with two sides; the first one
+/// stands for it. Bits of Scene::equal_faces.
+enum EqualFace : std::uint8_t {
+    kRepeated = 1,    ///< an earlier one is there the same way round: it is never seen
+    kTurnedOver = 2,  ///< the first one the other way round, which is seen if that one is culled
+    kBothSides = 4,   ///< the first of them; one is turned over
+};
+
 /// What loading found out; printed by `--stats`.
 struct SceneCounts {
     std::uint64_t degenerate_triangles = 0;  ///< dropped: two corners equal, or no area
     std::uint64_t polygons = 0;
     std::uint64_t concave_polygons = 0;
     std::uint64_t ignored_primitives = 0;  ///< points and lines
+    std::uint64_t joined_positions = 0;    ///< that differed, but by no more than the tolerance
+    std::uint64_t equal_faces = 0;         ///< polygons that equal an earlier one
 };
 
 /// Objects that move as one. Their positions and quadrics in the scene are those at rest; see
@@ -172,7 +191,7 @@ struct Scene {
     /// add_quadric().
     std::vector<Quadric> quadrics;
     std::vector<Material> materials;
-    std::vector<Light> lights;            ///< empty: one headlight
+    std::vector<Light> lights;  ///< empty: one headlight
     /// From scene.json: in the coordinates of the files, whatever the offset.
     std::optional<CameraOptions> camera;
     /// A point of the scene stands at point + offset in the coordinates of its files or arrays.
@@ -183,6 +202,9 @@ struct Scene {
     /// By how much a coordinate may differ from what was meant, because a file holds 32-bit floats:
     /// 2^-24 of the largest; 0 for texts and doubles, whose digits are taken as they are.
     double rounding = 0;
+    /// What files hold that has no effect, a line each, for people: textures, material libraries
+    /// that are missing, points and lines.
+    std::vector<std::string> notes;
     /// Of objects that share no position and no normal with others; each object is in one at most.
     std::vector<Motion> motions;
 
@@ -190,6 +212,8 @@ struct Scene {
     Box bounds;  ///< of the positions that triangles use, and of the quadrics
     Box reach;   ///< of all frames of the motions, to fit cameras to; the bounds if nothing moves
     std::vector<std::uint8_t> degenerate;  ///< one byte a triangle; empty when none is
+    /// Bits of EqualFace, one byte a triangle; empty when no two faces are equal.
+    std::vector<std::uint8_t> equal_faces;
     Sheets sheets;
     SceneCounts counts;
 
@@ -206,10 +230,25 @@ struct Scene {
 /// box is exact. O(1).
 [[nodiscard]] glm::dvec3 offset_for(const Box& box);
 
-/// Chooses the offset, then computes what is derived (bounds, degenerate triangles, sheets, closed
-/// objects). Precondition: indices are in range and positions finite. O(n log n), on all cores; the result
-/// does not depend on the number of threads.
-void finish_scene(Scene& scene);
+/// Positions of an object on its open edges are joined when they are no further apart than this
+/// part of the object's size: 2^-20, the precision of coordinates of six digits. See
+/// finish_scene().
+inline constexpr double kWeldTolerance = 0x1p-20;
+
+/// Chooses the offset, joins positions and computes what is derived (bounds, degenerate triangles,
+/// equal faces, sheets, closed objects).
+///
+/// Triangles of an object get the lowest index of those with equal positions (-0 equals 0). Then,
+/// where an object is not closed, each corner on an open edge (a side of one face alone) gets the
+/// lowest index of those on other open edges that are no further away than `weld` times the
+/// object's size (half the diagonal of its box, or a quarter of its largest coordinate if that is
+/// more) and than a sixteenth of the shortest open edge at either; never of one that another corner
+/// of the same triangle has. No position moves, and triangles keep their numbers. With weld = 0
+/// only equal positions are joined.
+///
+/// Precondition: indices are in range and positions finite; 0 <= weld < 1. O(n log n), on all
+/// cores; the result does not depend on the number of threads.
+void finish_scene(Scene& scene, double weld = kWeldTolerance);
 
 /// The finished scene as it stands in a frame, numbered from 0, without motions: triangles and
 /// objects keep their numbers, and `reach` remains that of all frames, so that a camera fitted to

@@ -6,6 +6,7 @@
 // In perspective z is linear in 1/depth, so planes of the world are planes on the screen.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -62,13 +63,12 @@ enum class Cull { automatic, none, back, front };
 
 /// How many triangles project() dropped, and why; for `--stats`.
 struct ProjectCounts {
-    std::uint64_t triangles = 0;    ///< in the scene
-    std::uint64_t degenerate = 0;   ///< no area in the world
-    std::uint64_t back_facing = 0;  ///< of all; counted only when culling is considered
-    std::uint64_t culled = 0;       ///< removed because of the side they show
-    std::uint64_t outside = 0;      ///< wholly outside of the view volume
-    std::uint64_t clipped = 0;      ///< cut by near, far or the guard band
-    std::uint64_t pieces = 0;       ///< triangles that came of the cuts
+    std::uint64_t triangles = 0;   ///< in the scene
+    std::uint64_t degenerate = 0;  ///< no area in the world
+    std::uint64_t culled = 0;      ///< removed because of the side they show
+    std::uint64_t outside = 0;     ///< wholly outside of the view volume
+    std::uint64_t clipped = 0;     ///< cut by near, far or the guard band
+    std::uint64_t pieces = 0;      ///< triangles that came of the cuts
 };
 
 struct ProjectOptions {
@@ -85,13 +85,28 @@ class ScreenScene {
 public:
     // -- triangles ---------------------------------------------------------------------------
     // Screen triangles 0 .. scene().triangle_count()-1 are those of the scene; further ones are
-    // pieces of clipped triangles. A dropped or clipped triangle is not drawable.
+    // pieces of clipped triangles. A dropped or clipped triangle is not drawable, nor is one that
+    // is seen edge-on in the world: it covers nothing, whatever snapping makes of it.
 
     [[nodiscard]] std::uint32_t triangle_count() const {
         return scene_->triangle_count() + static_cast<std::uint32_t>(pieces_.size());
     }
     [[nodiscard]] bool drawable(std::uint32_t k) const {
-        return k >= scene_->triangle_count() || skip_.empty() || skip_[k] == 0;
+        if (k >= scene_->triangle_count()) return true;
+        if (!skip_.empty() && skip_[k] != 0) return false;
+        return !is_thin(k) || !is_edge_on(k);
+    }
+    /// Whether a triangle of the scene lies in a plane that is seen as a line: exactly, as
+    /// Camera::sees_edge_on() has it.
+    [[nodiscard]] bool is_edge_on(std::uint32_t id) const;
+    /// The doubled area on the screen, whatever its sign, up to which a triangle with a box of this
+    /// size may be one that is seen edge-on. Let its true corners lie on a line, in a box of w by
+    /// h, and let each coordinate be moved by at most m. To first order the doubled area becomes at
+    /// most the sum over the sides of m (|dx| + |dy|), which is 2m (w + h), and the rest is below
+    /// 8m^2; the box seen is smaller than the true one by at most 2m. Snapping moves by 1/2; with
+    /// m = 1, double precision may be off by as much again.
+    [[nodiscard]] static constexpr std::int64_t thin_area(std::int64_t width, std::int64_t height) {
+        return 2 * (width + height) + 16;
     }
     /// Whether a triangle of the scene was removed because of the side it shows.
     [[nodiscard]] bool culled(std::uint32_t id) const {
@@ -126,6 +141,10 @@ public:
         return sheet_planes_[sheet];
     }
 
+    /// Replaces that plane by one that was found elsewhere, with triangles that are not in this
+    /// scene; see StreamPlan.
+    void set_sheet_plane(std::uint32_t sheet, const Plane& plane) { sheet_planes_[sheet] = plane; }
+
     // -- quadrics ----------------------------------------------------------------------------
     // Screen triangles do not include them, and they have no plane: see hit_quadric().
 
@@ -148,7 +167,8 @@ public:
     // -- arrays, for algorithms that take many triangles at a time ----------------
 
     [[nodiscard]] std::span<const ScreenPoint> points() const { return points_; }
-    /// One byte a triangle of the scene, not 0 = not drawable; empty when all are drawable.
+    /// One byte a triangle of the scene, not 0 = not drawable; empty when none is marked. Of the
+    /// others those of at most thin_area() may still be not drawable().
     [[nodiscard]] std::span<const std::uint8_t> skip() const { return skip_; }
     /// Corners of the pieces: screen triangle scene().triangle_count() + i is pieces()[i].
     [[nodiscard]] std::span<const Corners> pieces() const { return pieces_; }
@@ -156,6 +176,16 @@ public:
 private:
     friend class Projector;
     static constexpr std::uint8_t kCulledSide = 2;  // in skip_
+
+    [[nodiscard]] bool is_thin(std::uint32_t id) const {
+        const Corners c = scene_->triangles[id];
+        const ScreenPoint &p = points_[c.x], &q = points_[c.y], &r = points_[c.z];
+        const std::int64_t ux = q.x - p.x, uy = q.y - p.y, vx = r.x - p.x, vy = r.y - p.y;
+        const std::int64_t doubled = ux * vy - uy * vx;
+        const auto [x0, x1] = std::minmax({p.x, q.x, r.x});
+        const auto [y0, y1] = std::minmax({p.y, q.y, r.y});
+        return (doubled < 0 ? -doubled : doubled) <= thin_area(x1 - x0, y1 - y0);
+    }
 
     const Scene* scene_ = nullptr;
     Camera camera_;
@@ -190,5 +220,10 @@ struct QuadricHit {
 /// The same into `out`, whose memory is reused: for one frame after another.
 [[nodiscard]] Status project(const Scene& scene, const Camera& camera,
                              const ProjectOptions& options, ScreenScene& out);
+
+/// How many triangles of a scene turn their back to the camera: of all, in the view or not, drawn
+/// or culled. Those seen edge-on and those without area have no back. O(triangles), on all cores.
+[[nodiscard]] std::uint64_t count_back_facing(const Scene& scene, const Camera& camera,
+                                              int threads = 0);
 
 }  // namespace sightline

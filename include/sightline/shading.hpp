@@ -109,6 +109,9 @@ struct DrawOptions {
     /// Called, when set, at every change of stage with the rows of pixels that are done.
     std::function<void(DrawStage, std::uint32_t rows_done)> on_stage;
     const BspTree* tree = nullptr;  ///< see ResolveOptions
+    /// Set, when given: whether a surface covers a sample (of the colours if there are any), or a
+    /// part of a pixel where they are weighed by area.
+    bool* anything_seen = nullptr;
 };
 
 /// Resolves, shades and writes one or several files of a view. Where the algorithm makes its

@@ -55,6 +55,9 @@ struct Visibility {
     }
 };
 
+/// Whether something is seen at one of the samples. Ends at the first.
+[[nodiscard]] bool sees_anything(const Visibility& visibility);
+
 /// The depth of a plane at a point of the screen, in units of the depth grid: computed from the
 /// integers of the plane, within 2^-20 of the rational value, and clamped to 0 .. 2^30. Every depth
 /// that is written to a file comes from here. Precondition: plane.c > 0.
@@ -159,8 +162,9 @@ public:
     virtual ~LayerSource() = default;
     /// Rows of samples in a band; the last band may have fewer.
     [[nodiscard]] virtual std::uint32_t band_rows() const = 0;
-    /// Hands over the runs of a band. Of two at one sample the farther one comes first. Any number
-    /// of threads may work on different bands.
+    /// Hands over the runs of a band. Of two at one sample the farther one comes first; of exactly
+    /// equally deep ones, as along a fold, either. Any number of threads may work on different
+    /// bands.
     virtual void visit_band(std::uint32_t band, RunSink& sink) = 0;
     /// Appends what was counted so far to the counters of the options.
     virtual void report() = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
+#include <span>
 #include <utility>
 
 namespace sightline {
@@ -51,7 +53,7 @@ void join_pieces(std::vector<CrossingPiece>& pieces, std::vector<Crossing>& all)
 }
 
 void join_halves(std::vector<HalfCrossing>& halves, std::vector<Crossing>& all) {
-    const auto key = [](const HalfCrossing& e) { return std::tie(e.edge, e.plane); };
+    const auto key = [](const HalfCrossing& e) { return std::tie(e.edge, e.plane, e.occluder); };
     std::ranges::sort(halves, [&](const HalfCrossing& e, const HalfCrossing& f) {
         return key(e) != key(f) ? key(e) < key(f) : before(e.crossing, f.crossing);
     });
@@ -65,18 +67,40 @@ void join_halves(std::vector<HalfCrossing>& halves, std::vector<Crossing>& all) 
     }
 }
 
+/// Whether the faces at one edge separate those at another one on the same line. Around the line
+/// lie, on the right from near to deep and then on the left from deep to near, the faces at the
+/// first edge; between two that follow each other there is one sector, and those at the second edge
+/// must lie in different ones.
+bool are_separated(std::span<const EdgeMeeting> meetings) {
+    std::map<std::uint32_t, bool> first;  // whether on the right, by number
+    struct Seen {
+        bool right;
+        std::size_t nearer = 0;  ///< faces at the first edge, on the same side
+    };
+    std::map<std::uint32_t, Seen> second;
+    for (const EdgeMeeting& m : meetings) {
+        first.try_emplace(m.at_first.occluder, m.at_first.right);
+        Seen& seen =
+            second.try_emplace(m.at_second.occluder, Seen{m.at_second.right}).first->second;
+        if (m.at_first.right == m.at_second.right && m.nearer) ++seen.nearer;
+    }
+    if (first.size() < 2) return false;
+    const auto sector = [&](const Seen& seen) {
+        return (seen.right ? seen.nearer : first.size() - seen.nearer) % first.size();
+    };
+    const std::size_t one = sector(second.begin()->second);
+    return std::ranges::any_of(second, [&](const auto& s) { return sector(s.second) != one; });
+}
+
 void join_meetings(std::vector<EdgeMeeting>& meetings, std::vector<Crossing>& all) {
     const auto key = [](const EdgeMeeting& e) { return std::tie(e.first, e.second); };
     std::ranges::sort(meetings, [&](const EdgeMeeting& e, const EdgeMeeting& f) {
         return key(e) != key(f) ? key(e) < key(f) : before(e.crossing, f.crossing);
     });
     for (std::size_t i = 0, end = 0; i < meetings.size(); i = end) {
-        bool first[2] = {}, second[2] = {};
-        for (; end < meetings.size() && key(meetings[end]) == key(meetings[i]); ++end) {
-            first[meetings[end].first_side > 0 ? 1 : 0] = true;
-            second[meetings[end].second_side > 0 ? 1 : 0] = true;
-        }
-        if (first[0] && first[1] && second[0] && second[1]) all.push_back(meetings[i].crossing);
+        while (end < meetings.size() && key(meetings[end]) == key(meetings[i])) ++end;
+        if (are_separated(std::span(meetings).subspan(i, end - i)))
+            all.push_back(meetings[i].crossing);
     }
 }
 

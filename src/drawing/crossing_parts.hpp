@@ -39,16 +39,23 @@ struct CrossingPiece {
 /// side of that plane has the same edge.
 struct HalfCrossing {
     PageSide edge;
-    std::uint32_t plane = 0;  ///< the triangle whose plane it is
+    std::uint32_t plane = 0;     ///< the triangle whose plane it is
+    std::uint32_t occluder = 0;  ///< number of that triangle, or of a piece of it
     int side = 0;
     Crossing crossing;
 };
 
-/// Two edges on one line, each of a triangle that lies on one side of the other one's plane: a
-/// quarter of a crossing, when both surfaces go on to the other side.
+/// Two edges on one line, each of a triangle that has it in the other one's plane. Around that line
+/// the faces at each edge lie like rays around a point: the surfaces cross where those of one
+/// separate those of the other.
 struct EdgeMeeting {
-    PageSide first, second;               ///< in order
-    int first_side = 0, second_side = 0;  ///< of the triangles with the first and second edge
+    struct Ray {
+        std::uint32_t occluder = 0;  ///< number of the triangle
+        bool right = false;          ///< of the first edge, from its lower to its higher end
+    };
+    PageSide first, second;  ///< in order
+    Ray at_first, at_second;
+    bool nearer = false;  ///< the triangle at the first edge, where both are on one side
     Crossing crossing;
 };
 
@@ -62,7 +69,7 @@ struct CrossingParts {
 
 /// The segments that parts make, in an order that depends on the set of parts alone: pieces, whose
 /// ends on a common edge are joined to that of the lower pair of faces; halves that have a
-/// counterpart on the other side; meetings of edges whose faces lie on both sides of each other.
+/// counterpart on the other side; meetings of edges where surfaces go on to the other side.
 /// O(n log n).
 [[nodiscard]] std::vector<Crossing> join(CrossingParts& parts);
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "drawing/sheet_cover.hpp"
 #include "math/arena.hpp"
 #include "math/elementary.hpp"
 #include "scene/joined_mesh.hpp"
@@ -60,8 +61,13 @@ private:
                  static_cast<std::uint32_t>(std::min<std::size_t>(n, begin + kGrain)));
         });
     }
+    [[nodiscard]] unsigned equal_bits(std::uint32_t t) const {
+        return scene_.equal_faces.empty() ? 0 : scene_.equal_faces[t];
+    }
+    /// Of equal faces the first one stands for all.
     [[nodiscard]] bool dropped(std::uint32_t t) const {
-        return !scene_.degenerate.empty() && scene_.degenerate[t] != 0;
+        return (!scene_.degenerate.empty() && scene_.degenerate[t] != 0) ||
+               (equal_bits(t) & (kRepeated | kTurnedOver)) != 0;
     }
     [[nodiscard]] std::uint32_t vertex(std::uint32_t position) const {
         return joined_.empty() ? position : joined_[position];
@@ -76,8 +82,14 @@ private:
     void find_facing();
     void group_half_edges();
     [[nodiscard]] SceneEdges collect();
+    void cut_boundaries(SceneEdges& all) const;
     void collect_vertex(std::uint32_t v, Found& found);
     [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const HalfEdge> around) const;
+    /// Whether a boundary may turn out to be EdgeKind::mesh.
+    [[nodiscard]] bool may_be_covered(EdgeKind kind, std::uint32_t face) const {
+        return kind == EdgeKind::boundary && kinds_.has(EdgeKind::mesh) &&
+               scene_.sheets.of(face) != kNone;
+    }
     [[nodiscard]] bool is_polygon_edge(std::span<const HalfEdge> around) const;
     [[nodiscard]] bool is_contour(std::span<const HalfEdge> around) const;
     [[nodiscard]] bool is_sharp(const HalfEdge& f, const HalfEdge& g) const;
@@ -190,9 +202,10 @@ void EdgeFinder::collect_vertex(std::uint32_t v, Found& found) {
         while (end < group.size() && group[end].higher == group[i].higher) ++end;
         const auto around = group.subspan(i, end - i);
         const std::optional<EdgeKind> kind = kind_of(around);
-        if (!kind || !kinds_.has(*kind)) continue;
-        const bool culled =
-            std::ranges::all_of(around, [&](const HalfEdge& h) { return page_.culled(h.face); });
+        if (!kind || !(kinds_.has(*kind) || may_be_covered(*kind, around[0].face))) continue;
+        const bool culled = std::ranges::all_of(around, [&](const HalfEdge& h) {
+            return page_.culled(h.face) && equal_bits(h.face) == 0;
+        });
         found.edges.push_back({v, group[i].higher, static_cast<std::uint32_t>(found.faces.size()),
                                static_cast<std::uint32_t>(around.size()), *kind, culled});
         for (const HalfEdge& h : around) found.faces.push_back(h.face);
@@ -214,7 +227,19 @@ SceneEdges EdgeFinder::collect() {
         }
         all.faces.insert(all.faces.end(), found.faces.begin(), found.faces.end());
     }
+    cut_boundaries(all);
     return all;
+}
+
+/// A boundary behind which its own sheet goes on is none.
+void EdgeFinder::cut_boundaries(SceneEdges& all) const {
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t e = 0; e < all.edges.size(); ++e)
+        if (all.edges[e].kind == EdgeKind::boundary &&
+            scene_.sheets.of(all.faces[all.edges[e].first_face]) != kNone)
+            open.push_back(e);
+    cut_covered_edges(scene_, open, all);
+    std::erase_if(all.edges, [&](const SceneEdge& edge) { return !kinds_.has(edge.kind); });
 }
 
 }  // namespace

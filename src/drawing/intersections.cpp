@@ -172,8 +172,8 @@ private:
     };
 
     /// Whether a triangle lies outside of one of the two sides of another one that meet at a corner
-    /// of both: they have nothing but that corner in common on the page. In a mesh that is so of
-    /// most triangles around a vertex.
+    /// of both, clearly so: they have nothing but that corner in common on the page, no edges on
+    /// one line either. In a mesh that is so of most triangles around a vertex.
     static bool is_outside(const Occluder& o, std::size_t own, const Occluder& other,
                            std::size_t theirs) {
         const ScreenPoint& corner = o.point(own);
@@ -181,8 +181,10 @@ private:
         const std::size_t first = Occluder::next(theirs), second = Occluder::next(first);
         const auto beyond = [&](const ScreenPoint& from, const ScreenPoint& to) {
             const ScreenPoint &s = other.point(first), &t = other.point(second);
-            return side(from.x, from.y, to.x, to.y, s.x, s.y) < 0 &&
-                   side(from.x, from.y, to.x, to.y, t.x, t.y) < 0;
+            const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+            const std::int64_t slack = -kJoinedSteps * (std::abs(dx) + std::abs(dy));
+            return side(from.x, from.y, to.x, to.y, s.x, s.y) < slack &&
+                   side(from.x, from.y, to.x, to.y, t.x, t.y) < slack;
         };
         return beyond(corner, o.point(after)) || beyond(o.point(before), corner);
     }
@@ -226,54 +228,78 @@ private:
         std::optional<Stretch> stretch = chord(line, std::span(f_sides.side).first<3>());
         if (stretch) stretch = inside(line, CarrierSide::right, *stretch, g_sides);
         if (!stretch) return;
+        // Sides 0, 1, 2 are those of f, the others those of g. The piece runs from the lower one.
+        const auto side_at = [&](const Place& place) {
+            std::size_t k = 0;
+            while (place.line != (k < 3 ? &f_sides.side[k] : &g_sides.side[k - 3])) ++k;
+            return k;
+        };
+        std::array<std::size_t, 2> at = {side_at(stretch->from), side_at(stretch->to)};
+        if (at[1] < at[0]) std::swap(at[0], at[1]);
         CrossingPiece piece;
         piece.crossing.faces = {f.o.id, g.o.id};
-        const auto end = [&](const Place& place, ScreenPoint& point) {
-            std::size_t k = 0;
-            while (k < 3 && place.line != &f_sides.side[k]) ++k;
-            const bool on_f = k < 3;
-            if (!on_f)
-                for (k = 0; place.line != &g_sides.side[k];) ++k;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const bool on_f = at[i] < 3;
+            const std::size_t k = on_f ? at[i] : at[i] - 3;
             const Occluder &o = on_f ? f.o : g.o, &other = on_f ? g.o : f.o;
-            const glm::ivec2 at = rounded_crossing_of(line, *place.line);
-            const std::int32_t z = rounded_depth_at_crossing(line, *place.line, f.plane);
-            point = piece_end(o, on_f ? own : theirs, k, {at.x, at.y, z});
-            return CrossingPiece::End{{o.point(k), o.point(Occluder::next(k))}, other.id};
-        };
-        piece.ends = {end(stretch->from, piece.crossing.p), end(stretch->to, piece.crossing.q)};
+            const PageLine& across = on_f ? f_sides.side[k] : g_sides.side[k];
+            const glm::ivec2 page = rounded_crossing_of(line, across);
+            const std::int32_t z = rounded_depth_at_crossing(line, across, f.plane);
+            (i == 0 ? piece.crossing.p : piece.crossing.q) =
+                piece_end(o, on_f ? own : theirs, k, {page.x, page.y, z});
+            piece.ends[i] = {{o.point(k), o.point(Occluder::next(k))}, other.id};
+        }
         found.pieces.push_back(piece);
     }
 
-    /// The corner that is not in the plane, and the edge that is, from its lower to its higher end.
+    [[nodiscard]] std::uint32_t number_of(const Occluder& o) const {
+        return static_cast<std::uint32_t>(&o - &occluders_[0]);
+    }
+
+    /// The corner that is not in the plane, and the edge that is.
     struct ZeroEdge {
+        const Occluder* o;
         int off_side;
         PageSide edge;
+        bool right;  ///< of the edge, from its lower to its higher end
 
-        ZeroEdge(const Occluder& o, const Sides& sides) {
+        ZeroEdge(const Occluder& face, const Sides& sides) : o(&face) {
             const std::size_t off = sides.sign[0] != 0 ? 0 : sides.sign[1] != 0 ? 1 : 2;
             off_side = sides.sign[off];
-            edge = {o.point(Occluder::next(off)), o.point(Occluder::next(Occluder::next(off)))};
+            const ScreenPoint& from = face.point(Occluder::next(off));
+            edge = {from, face.point(Occluder::next(Occluder::next(off)))};
+            right = edge.low == from;  // the inside of an occluder is on the right of its sides
         }
     };
 
-    static void add_half(const Occluder& o, const Sides& own, const Occluder& other,
-                         CrossingParts& found) {
+    void add_half(const Occluder& o, const Sides& own, const Occluder& other,
+                  CrossingParts& found) const {
         const ZeroEdge e(o, own);
-        HalfCrossing half{e.edge, other.id, e.off_side, {}};
+        HalfCrossing half{e.edge, other.id, number_of(other), e.off_side, {}};
         half.crossing = {
             e.edge.low, e.edge.high, {std::min(o.id, other.id), std::max(o.id, other.id)}};
         if (clip_edge(half.crossing.p, half.crossing.q, other)) found.halves.push_back(half);
     }
 
-    static void add_meeting(const Occluder& o, const Sides& own, const Occluder& other,
-                            const Sides& theirs, CrossingParts& found) {
+    void add_meeting(const Occluder& o, const Sides& own, const Occluder& other,
+                     const Sides& theirs, CrossingParts& found) const {
         ZeroEdge e(o, own), f(other, theirs);
         if (f.edge < e.edge) std::swap(e, f);
-        EdgeMeeting meeting{e.edge, f.edge, e.off_side, f.off_side, {}};
+        EdgeMeeting meeting;
         meeting.crossing = {
             e.edge.low, e.edge.high, {std::min(o.id, other.id), std::max(o.id, other.id)}};
-        if (overlap(meeting.crossing.p, meeting.crossing.q, f.edge.low, f.edge.high))
-            found.meetings.push_back(meeting);
+        if (!overlap(meeting.crossing.p, meeting.crossing.q, f.edge.low, f.edge.high)) return;
+        meeting.first = e.edge;
+        meeting.second = f.edge;
+        meeting.at_first = {number_of(*e.o), e.right};
+        meeting.at_second = {number_of(*f.o), f.right == same_way(e.edge, f.edge)};
+        meeting.nearer = e.off_side < 0;
+        found.meetings.push_back(meeting);
+    }
+    static bool same_way(const PageSide& e, const PageSide& f) {
+        return (std::int64_t{e.high.x} - e.low.x) * (std::int64_t{f.high.x} - f.low.x) +
+                   (std::int64_t{e.high.y} - e.low.y) * (std::int64_t{f.high.y} - f.low.y) >
+               0;
     }
 
     const Occluders& occluders_;

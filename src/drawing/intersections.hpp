@@ -2,13 +2,14 @@
 //
 // Source: T. Möller, "A Fast Triangle-Triangle Intersection Test", Journal of Graphics Tools 2(2),
 // 1997: each triangle's corners against the other's plane, then intervals on the common line. How
-// this version differs: all signs are exact on the integers of the page. What touches (a corner or
-// an edge in the other's plane) does not cross, except where the surface goes on to the other side:
-// an edge that lies in a plane is a crossing when its two faces lie on different sides.
+// this version differs: all signs are exact on the integers of the page, and the common line is
+// that where both planes have one depth, the planes that decide what is seen: corners of faces that
+// share a plane lie beside it. What touches (a corner or an edge in the other's plane) does not
+// cross, except where the surface goes on to the other side: an edge that lies in a plane is a
+// crossing when its two faces lie on different sides. docs/exactness.md has the definition in full.
 //
-// The ends of a segment are points where an edge of one triangle pierces the other one. They are
-// computed on the edge with its ends in a canonical order and rounded to the grid once, so that
-// neighbouring segments share them; from there on a segment is an edge like any other.
+// The ends of a segment are rounded to the grid once, and neighbouring segments share them; from
+// there on a segment is an edge like any other.
 #pragma once
 
 #include <array>

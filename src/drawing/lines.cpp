@@ -24,18 +24,27 @@ using ScreenLine = std::optional<std::pair<ScreenPoint, ScreenPoint>>;
 /// The lines of the scene's edges.
 class EdgeProjector {
 public:
-    explicit EdgeProjector(const ScreenScene& page)
-        : page_(page), transform_(page_transform(page)) {}
+    EdgeProjector(const ScreenScene& page, const std::vector<glm::dvec3>& cuts)
+        : page_(page), transform_(page_transform(page)), cuts_(cuts) {}
 
     [[nodiscard]] ScreenLine ends(std::uint32_t a, std::uint32_t b) const {
-        const ScreenPoint &p = page_.point(a), &q = page_.point(b);
-        if (p.x != kOutside && q.x != kOutside) return std::pair(p, q);
-        return clip_line(transform_, page_.scene().positions[a], page_.scene().positions[b]);
+        const std::size_t n = page_.scene().positions.size();
+        if (a < n && b < n) {
+            const ScreenPoint &p = page_.point(a), &q = page_.point(b);
+            if (p.x != kOutside && q.x != kOutside) return std::pair(p, q);
+        }
+        return clip_line(transform_, position(a), position(b));
     }
 
 private:
+    [[nodiscard]] const glm::dvec3& position(std::uint32_t i) const {
+        const auto& positions = page_.scene().positions;
+        return i < positions.size() ? positions[i] : cuts_[i - positions.size()];
+    }
+
     const ScreenScene& page_;
     ScreenTransform transform_;
+    const std::vector<glm::dvec3>& cuts_;
 };
 
 /// Sheets of the faces of an edge, for HiddenLineFinder.
@@ -185,7 +194,7 @@ PageEdges collect_edges(const ScreenScene& page, const TraceOptions& options) {
     };
     if (!options.edges.empty()) {
         SceneEdges found = find_edges(page, options.edges, options.crease_angle, options.threads);
-        const EdgeProjector projector(page);
+        const EdgeProjector projector(page, found.cuts);
         all.edges.reserve(found.edges.size() + options.free_lines.size());
         for (const SceneEdge& edge : found.edges) {
             if (!add(projector.ends(edge.a, edge.b), edge.kind)) continue;

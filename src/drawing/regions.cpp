@@ -102,7 +102,8 @@ void RegionFinder::collect_hiders(const Occluder& face) {
         if (separates(face, other) || separates(other, face)) continue;
         const InFront where = in_front(other, face);
         if (where == InFront::nowhere) continue;
-        Hider hider{k, where == InFront::everywhere, sides_of(other.p, other.q, other.r), bounds_over(other, face)};
+        Hider hider{k, where == InFront::everywhere, sides_of(other.p, other.q, other.r),
+                    bounds_over(other, face)};
         if (!hider.whole) {
             hider.sides.side[3] = line_where_deeper(face.plane, other.plane);
             hider.sides.count = 4;
@@ -244,6 +245,7 @@ void RegionFinder::subtract_hiders(const PageLine& carrier, CarrierSide beside,
 BorderPiece RegionFinder::piece(const PageLine& carrier, const Stretch& stretch,
                                 bool reversed) const {
     BorderPiece piece;
+    piece.own = !reversed;
     const auto place = [&](const Place& p, glm::ivec2& rounded, glm::dvec2& exact) {
         if (p.corner != nullptr) {
             rounded = {p.corner->x, p.corner->y};

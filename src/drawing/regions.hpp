@@ -27,6 +27,7 @@ namespace sightline {
 struct BorderPiece {
     glm::ivec2 from, to;              ///< rounded
     glm::dvec2 exact_from, exact_to;  ///< not rounded to the grid
+    bool own = false;                 ///< of a side of the face itself, not of what hides it
 };
 
 enum class FaceFate { whole, partly, hidden };
@@ -79,6 +80,7 @@ private:
                          std::uint32_t skip);
     [[nodiscard]] bool cover(const PageLine& carrier, CarrierSide beside, const Stretch& stretch,
                              std::uint32_t hider, std::uint32_t skip);
+    /// Of a side of the face, or reversed of a side of what hides it.
     [[nodiscard]] BorderPiece piece(const PageLine& carrier, const Stretch& stretch,
                                     bool reversed) const;
 

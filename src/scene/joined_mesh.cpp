@@ -10,9 +10,11 @@ namespace {
 
 constexpr std::size_t kFirstSlots = 64;
 
-/// Spreads the bits of three doubles over 64 bits: the multiply-and-shift mixing of MurmurHash3
-/// (Austin Appleby, public domain) after each coordinate.
-std::uint64_t hash(const glm::dvec3& p) {
+}  // namespace
+
+// The multiply-and-shift mixing of MurmurHash3 (Austin Appleby, public domain) after each
+// coordinate.
+std::uint64_t hash_of(const glm::dvec3& p) {
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis) {
         h = (h ^ std::bit_cast<std::uint64_t>(p[axis])) * 0xff51afd7ed558ccdull;
@@ -21,8 +23,6 @@ std::uint64_t hash(const glm::dvec3& p) {
     return h;
 }
 
-}  // namespace
-
 PositionJoiner::PositionJoiner(AlignedVector<glm::dvec3>& points, std::size_t expected)
     : points_(points),
       base_(points.size()),
@@ -30,7 +30,7 @@ PositionJoiner::PositionJoiner(AlignedVector<glm::dvec3>& points, std::size_t ex
 
 std::size_t PositionJoiner::slot_of(const glm::dvec3& position) const {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = static_cast<std::size_t>(hash(position)) & mask;
+    std::size_t slot = static_cast<std::size_t>(hash_of(position)) & mask;
     while (slots_[slot] != kNone && points_[slots_[slot]] != position) slot = (slot + 1) & mask;
     return slot;
 }
@@ -58,14 +58,18 @@ ObjectJoiner::ObjectJoiner(const Scene& scene, bool joined)
     : scene_(scene), is_joined_(joined), joined_(scene.positions.size(), kNone) {}
 
 JoinedMesh ObjectJoiner::join(const Object& object) {
-    JoinedMesh mesh;
-    PositionJoiner joiner(mesh.points);
+    // The only one has joined points already: those of the scene.
+    if (is_joined_ && object.triangle_count == scene_.triangles.size())
+        return {scene_.positions, scene_.triangles};
+    points_.clear();
+    triangles_.clear();
+    PositionJoiner joiner(points_);
     const auto add = [&](const glm::dvec3& position) {
         if (!is_joined_) return joiner.add(position);
-        mesh.points.push_back(position);
-        return static_cast<std::uint32_t>(mesh.points.size() - 1);
+        points_.push_back(position);
+        return static_cast<std::uint32_t>(points_.size() - 1);
     };
-    mesh.triangles.reserve(object.triangle_count);
+    triangles_.reserve(object.triangle_count);
     const auto end = object.first_triangle + object.triangle_count;
     for (std::uint32_t t = object.first_triangle; t < end; ++t) {
         Corners corners{};
@@ -75,12 +79,24 @@ JoinedMesh ObjectJoiner::join(const Object& object) {
             if (joined == kNone) joined = add(scene_.positions[position]);
             corners[k] = joined;
         }
-        mesh.triangles.push_back(corners);
+        triangles_.push_back(corners);
     }
     for (std::uint32_t t = object.first_triangle; t < end; ++t) {
         for (int k = 0; k < 3; ++k) joined_[scene_.triangles[t][k]] = kNone;
     }
-    return mesh;
+    return {points_, triangles_};
+}
+
+std::vector<std::uint32_t> ObjectJoiner::indices_of(const Object& object,
+                                                    const JoinedMesh& mesh) const {
+    std::vector<std::uint32_t> lowest(mesh.points.size(), kNone);
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+        for (int k = 0; k < 3; ++k) {
+            std::uint32_t& index = lowest[mesh.triangles[t][k]];
+            index = std::min(index, scene_.triangles[object.first_triangle + t][k]);
+        }
+    }
+    return lowest;
 }
 
 bool is_degenerate(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {

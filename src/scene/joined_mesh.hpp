@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "sightline/scene.hpp"
@@ -32,10 +33,13 @@ private:
     std::vector<std::uint32_t> slots_;  ///< index of a point, or kNone; a power of two long
 };
 
-/// Triangles of one object on its own joined points.
+/// Spreads the bits of three doubles over 64 bits.
+[[nodiscard]] std::uint64_t hash_of(const glm::dvec3& p);
+
+/// Triangles of one object on joined points. The arrays are somebody else's.
 struct JoinedMesh {
-    AlignedVector<glm::dvec3> points;
-    AlignedVector<Corners> triangles;  ///< in the object's order
+    std::span<const glm::dvec3> points;  ///< not all of them need be used
+    std::span<const Corners> triangles;  ///< in the object's order
 };
 
 /// Joins the objects of a scene one after another with one piece of scratch memory. Not
@@ -44,11 +48,17 @@ class ObjectJoiner {
 public:
     /// `joined`: equal positions of an object share an index in the scene already.
     explicit ObjectJoiner(const Scene& scene, bool joined = false);
+    /// Valid until the next call, and as long as the scene's positions and triangles stay.
     [[nodiscard]] JoinedMesh join(const Object& object);
+    /// The lowest index that each point of the object's mesh has in the scene.
+    [[nodiscard]] std::vector<std::uint32_t> indices_of(const Object& object,
+                                                        const JoinedMesh& mesh) const;
 
 private:
     const Scene& scene_;
     bool is_joined_;
+    AlignedVector<glm::dvec3> points_;
+    AlignedVector<Corners> triangles_;
     std::vector<std::uint32_t> joined_;  ///< of each scene position, or kNone between two calls
 };
 

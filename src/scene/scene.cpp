@@ -17,6 +17,7 @@
 #include "scene/sheets.hpp"
 #include "scene/topology.hpp"
 #include "scene/translucency.hpp"
+#include "scene/weld.hpp"
 
 namespace sightline {
 namespace {
@@ -63,10 +64,9 @@ void find_degenerate(Scene& scene) {
     if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
 }
 
-enum class FindSheets { yes, no };
-
-/// What is derived, after the bounds of the triangles.
-void derive(Scene& scene, bool joined, FindSheets sheets = FindSheets::yes) {
+/// What is derived, after the bounds of the triangles. Equal positions of an object share an index
+/// if `joined`.
+void derive(Scene& scene, bool joined, double weld, FindSheets sheets = FindSheets::yes) {
     add_quadrics(scene.quadrics, scene.bounds);
     scene.reach = reach_of(scene);
     find_degenerate(scene);
@@ -74,11 +74,17 @@ void derive(Scene& scene, bool joined, FindSheets sheets = FindSheets::yes) {
         std::accumulate(scene.objects.begin(), scene.objects.end(), std::uint64_t{0},
                         [](std::uint64_t sum, const Object& o) { return sum + o.polygon_count; });
     find_translucent_vertices(scene);
+    Joins joins;
     // Neither looks at what the other finds.
-    tbb::parallel_invoke([&] { find_closed_objects(scene, joined); },
+    tbb::parallel_invoke([&] { joins = find_closed_objects(scene, joined, weld); },
                          [&] {
                              if (sheets == FindSheets::yes) build_sheets(scene);
                          });
+    if (joins.positions == 0) return;
+    // Rare enough to begin anew.
+    apply(joins, scene);
+    scene.bounds = bounds_of_triangles(scene);
+    derive(scene, joined, 0, sheets);
 }
 
 }  // namespace
@@ -92,27 +98,28 @@ std::uint32_t Scene::object_of(std::uint32_t id) const {
     return static_cast<std::uint32_t>(after - objects.begin()) - 1;
 }
 
-void finish_scene(Scene& scene) {
+void finish_scene(Scene& scene, double weld) {
     scene.bounds = bounds_of_triangles(scene);
     if (recentre(scene)) scene.bounds = bounds_of_triangles(scene);
-    derive(scene, false);
+    join_equal_positions(scene);
+    derive(scene, true, weld);
 }
 
-void finish_joined_scene(Scene& scene, const std::optional<glm::dvec3>& offset) {
-    if (offset) move_to_offset(scene, *offset);
+void finish_joined_scene(Scene& scene, const FinishOptions& options) {
+    if (options.offset) move_to_offset(scene, *options.offset);
     scene.bounds = bounds_of_positions(scene);
-    if (!offset && recentre(scene)) scene.bounds = bounds_of_positions(scene);
-    derive(scene, true);
+    if (!options.offset && recentre(scene)) scene.bounds = bounds_of_positions(scene);
+    derive(scene, true, options.weld, options.sheets);
 }
 
 void finish_derived_scene(Scene& scene) {
     scene.bounds = bounds_of_triangles(scene);
-    derive(scene, false);
+    derive(scene, false, 0);
 }
 
 void finish_scene_without_sheets(Scene& scene) {
     scene.bounds = bounds_of_triangles(scene);
-    derive(scene, true, FindSheets::no);
+    derive(scene, true, 0, FindSheets::no);
 }
 
 }  // namespace sightline

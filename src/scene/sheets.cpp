@@ -3,12 +3,14 @@
 // Snapped to a screen one by one, a wall and the decal on it are no longer coplanar and fight; so
 // the clusters are found here, in the world, once, and share a plane in every view.
 //
-// Method. A plane is a point (normal, offset) of a four-dimensional grid of cells; a face asks the
-// cells that its own uncertainty reaches (most often one) for partners. Faces with a partner are
-// then taken from the largest down: each that is still free becomes a seed and takes every free
-// face whose corners lie within `tolerance` of its plane. Membership refers to the seed and is not
-// handed on from member to member, so a finely tessellated sphere does not grow into one sheet; and
-// since the seeds come in an order that only geometry decides, the order of input does not matter.
+// Method, of one part of the scene (a file). A plane is a point (normal, offset) of a
+// four-dimensional grid of cells; a face asks the cells that its own uncertainty reaches (most
+// often one) for partners. Faces with a partner are then taken from the largest down: each that is
+// still free becomes a seed and takes every free face whose corners lie within `tolerance` of its
+// plane. Membership refers to the seed and is not handed on from member to member, so a finely
+// tessellated sphere does not grow into one sheet; and since the seeds come in an order that only
+// geometry decides, the order of input does not matter. Sheets of several parts are then joined as
+// wholes (sheet_joiner.cpp).
 #include "scene/sheets.hpp"
 
 #include <tbb/blocked_range.h>
@@ -24,30 +26,17 @@
 #include <span>
 #include <tuple>
 
+#include "scene/tolerance.hpp"
+
 namespace sightline {
 
 namespace {
 
-// Coordinates in files are floats or decimals of about six digits.
-constexpr double kToleranceOfSize = 0x1p-20;        // of the scene's radius
-constexpr double kToleranceOfCoordinate = 0x1p-22;  // of the largest coordinate
-// The same for scenes that were moved to the origin, in terms of Scene::rounding, which is 2^-24 of
-// what was the largest coordinate.
-constexpr double kToleranceOfRounding = 4;
-// How far the normals of coplanar faces may differ: the normal of a face is that uncertain when its
-// size is 2^-12 of the scene's. Smaller faces are left alone rather than matched by chance.
-constexpr double kNormalTolerance = 0x1p-12;
 // Cells of 8 tolerances along the normal, so that a face rarely reaches two, and of 2 along the
 // offset, where parallel planes crowd.
 constexpr std::array<double, 4> kCell{0x1p-9, 0x1p-9, 0x1p-9, 0x1p-11};
 constexpr std::int64_t kCellBias = 4096;
 constexpr int kCellBits = 14;
-
-struct FacePlane {
-    glm::dvec3 normal;  // unit
-    double offset;      // of the plane from the scene's centre, along the normal
-    double area2;       // doubled area
-};
 
 template <class Body>
 void parallel_faces(std::size_t n, const Body& body) {
@@ -57,57 +46,43 @@ void parallel_faces(std::size_t n, const Body& body) {
     });
 }
 
+/// Finds the sheets of some triangles of a scene, one after the other: a part.
 class SheetBuilder {
 public:
-    explicit SheetBuilder(Scene& scene) : scene_(scene) {
-        centre_ = scene.bounds.centre();
-        radius_ = 0.5 * glm::length(scene.bounds.extent());
-        tolerance_ = coplanar_tolerance(scene.bounds, scene.rounding);
-    }
+    SheetBuilder(Scene& scene, const SheetScale& scale, TriangleRun run)
+        : scene_(scene),
+          scale_(scale),
+          begin_(run.first),
+          count_(run.count),
+          sheet_count_(static_cast<std::uint32_t>(scene.sheets.first.size())) {}
 
-    void run() {
-        scene_.sheets = {};
-        if (scene_.bounds.empty() || !(radius_ > 0)) return;
+    /// Appends the sheets, without frames, to those of the scene, and their seeds.
+    void run(std::vector<std::uint32_t>& seeds) {
         find_planes();
         fill_cells();
-        grow_sheets(find_candidates());
-        finish();
+        grow_sheets(find_candidates(), seeds);
     }
 
 private:
     // -- planes and cells ---------------------------------------------------------------------
 
     [[nodiscard]] const glm::dvec3& corner(std::uint32_t t, int k) const {
-        return scene_.positions[scene_.triangles[t][k]];
+        return scene_.positions[scene_.triangles[begin_ + t][k]];
     }
 
-    [[nodiscard]] bool is_usable(std::uint32_t t) const { return planes_[t].area2 > 0; }
+    [[nodiscard]] bool is_usable(std::uint32_t t) const { return planes_[t].is_usable(); }
 
     void find_planes() {
-        planes_.resize(scene_.triangles.size());
+        planes_.resize(count_);
         parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            const glm::dvec3 p = corner(t, 0);
-            const glm::dvec3 n = glm::cross(corner(t, 1) - p, corner(t, 2) - p);
-            const double length = glm::length(n);
-            const bool dropped = !scene_.degenerate.empty() && scene_.degenerate[t] != 0;
-            if (dropped || !(length > 0) || !std::isfinite(length)) {
-                planes_[t] = {{0, 0, 0}, 0, 0};
-                return;
-            }
-            const glm::dvec3 unit = n / length;
-            planes_[t] = {unit, glm::dot(unit, p - centre_), length};
+            planes_[t] = plane_of_face(scene_, scale_, begin_ + t);
         });
     }
 
     // The four coordinates of a plane, all of about the size of 1. A plane and its reverse are one.
     [[nodiscard]] std::array<double, 4> coordinates(const FacePlane& plane, double sign) const {
         return {sign * plane.normal.x, sign * plane.normal.y, sign * plane.normal.z,
-                sign * plane.offset / radius_};
-    }
-
-    // Where the sign of the normal is fixed; no axis or diagonal of a model lies across it.
-    [[nodiscard]] static double heading(const FacePlane& plane) {
-        return glm::dot(plane.normal, glm::dvec3{0.3717, 0.5423, 0.7535});
+                sign * plane.offset / scale_.radius};
     }
 
     [[nodiscard]] static std::uint64_t pack(const std::array<std::int64_t, 4>& cell) {
@@ -135,7 +110,7 @@ private:
         std::vector<std::uint64_t> cells(planes_.size());
         parallel_faces(planes_.size(), [&](std::uint32_t t) {
             const FacePlane& plane = planes_[t];
-            const auto at = coordinates(plane, heading(plane) < 0 ? -1.0 : 1.0);
+            const auto at = coordinates(plane, heading(plane.normal) < 0 ? -1.0 : 1.0);
             std::array<std::int64_t, 4> cell{};
             for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
             cells[t] = pack(cell);
@@ -197,7 +172,7 @@ private:
     // among them.
     template <class Visit>
     bool any_near(std::uint32_t t, const Visit& visit) const {
-        const double h = heading(planes_[t]);
+        const double h = heading(planes_[t].normal);
         if (h >= -2 * kNormalTolerance && any_around(coordinates(planes_[t], 1), t, visit))
             return true;
         return h <= 2 * kNormalTolerance && any_around(coordinates(planes_[t], -1), t, visit);
@@ -205,17 +180,11 @@ private:
 
     // -- clusters -----------------------------------------------------------------------------
 
-    [[nodiscard]] static bool are_parallel(const glm::dvec3& n, const glm::dvec3& m) {
-        return !(1 - std::abs(glm::dot(n, m)) > 0.5 * kNormalTolerance * kNormalTolerance);
-    }
-
     // Whether a face whose normal agrees with that of the seed lies in its plane.
     [[nodiscard]] bool lies_in(std::uint32_t t, std::uint32_t seed) const {
         const FacePlane& plane = planes_[seed];
         for (int k = 0; k < 3; ++k)
-            if (std::abs(glm::dot(plane.normal, corner(t, k) - centre_) - plane.offset) >
-                tolerance_)
-                return false;
+            if (!scale_.holds(plane, corner(t, k))) return false;
         return true;
     }
 
@@ -256,10 +225,12 @@ private:
         return a.triangle < b.triangle;
     }
 
-    void grow_sheets(const std::vector<std::uint32_t>& candidates) {
+    void grow_sheets(const std::vector<std::uint32_t>& candidates,
+                     std::vector<std::uint32_t>& seeds) {
         if (candidates.empty()) return;
-        auto& of_triangle = scene_.sheets.of_triangle;
-        of_triangle.assign(scene_.triangles.size(), kNone);
+        if (scene_.sheets.of_triangle.empty())
+            scene_.sheets.of_triangle.assign(scene_.triangles.size(), kNone);
+        const auto of_triangle = std::span(scene_.sheets.of_triangle).subspan(begin_, count_);
         std::vector<std::uint32_t> members;
         for (const std::uint32_t seed : candidates) {
             if (of_triangle[seed] != kNone) continue;
@@ -273,110 +244,77 @@ private:
             if (members.size() < 2) continue;
             for (const std::uint32_t t : members) of_triangle[t] = sheet_count_;
             scene_.sheets.first.push_back(static_cast<std::uint32_t>(scene_.sheets.members.size()));
-            scene_.sheets.members.insert(scene_.sheets.members.end(), members.begin(),
-                                         members.end());
+            for (const std::uint32_t t : members) scene_.sheets.members.push_back(begin_ + t);
+            seeds.push_back(begin_ + seed);
             ++sheet_count_;
         }
     }
 
-    // -- frames and balls -----------------------------------------------------------------------
-
-    // The corner of a sheet with the greatest measure; among equals the lexicographically smallest.
-    template <class Measure>
-    [[nodiscard]] std::uint32_t farthest(std::span<const std::uint32_t> members,
-                                         const Measure& measure) const {
-        std::uint32_t best = scene_.triangles[members[0]].x;
-        double best_measure = measure(scene_.positions[best]);
-        for (const std::uint32_t t : members) {
-            for (int k = 0; k < 3; ++k) {
-                const glm::dvec3 &p = corner(t, k), &b = scene_.positions[best];
-                const double m = measure(p);
-                if (m > best_measure ||
-                    (m == best_measure && std::tie(p.x, p.y, p.z) < std::tie(b.x, b.y, b.z))) {
-                    best = scene_.triangles[t][k];
-                    best_measure = m;
-                }
-            }
-        }
-        return best;
-    }
-
-    void frame_sheet(std::size_t s) {
-        Sheets& sheets = scene_.sheets;
-        const std::span<const std::uint32_t> members(sheets.members.data() + sheets.first[s],
-                                                     sheets.first[s + 1] - sheets.first[s]);
-        const auto at = [&](std::uint32_t i) { return scene_.positions[i]; };
-        const auto squared = [](const glm::dvec3& v) { return glm::dot(v, v); };
-        const glm::dvec3 start = at(farthest(members, [](const glm::dvec3&) { return 0.0; }));
-        const auto p = farthest(members, [&](const glm::dvec3& v) { return squared(v - start); });
-        const auto q = farthest(members, [&](const glm::dvec3& v) { return squared(v - at(p)); });
-        const glm::dvec3 along = at(q) - at(p);
-        const auto r = farthest(
-            members, [&](const glm::dvec3& v) { return squared(glm::cross(along, v - at(p))); });
-        sheets.frame[s] = Corners(p, q, r);
-        const glm::dvec3 middle = 0.5 * (at(p) + at(q));
-        const auto rim =
-            farthest(members, [&](const glm::dvec3& v) { return squared(v - middle); });
-        sheets.ball[s] = glm::dvec4(middle, glm::length(at(rim) - middle));
-    }
-
-    // Found by size; numbered in the order of their first members, so that who goes through the
-    // triangles goes through the sheets.
-    void number_in_order() {
-        Sheets& sheets = scene_.sheets;
-        std::vector<std::uint32_t> number(sheet_count_, kNone);
-        std::vector<std::uint32_t> next(sheet_count_);  // where a sheet's next member goes
-        sheets.first.push_back(static_cast<std::uint32_t>(sheets.members.size()));
-        std::vector<std::uint32_t> first{0};
-        for (std::uint32_t& s : sheets.of_triangle) {
-            if (s == kNone) continue;
-            if (number[s] == kNone) {
-                number[s] = static_cast<std::uint32_t>(first.size() - 1);
-                next[number[s]] = first.back();
-                first.push_back(first.back() + sheets.first[s + 1] - sheets.first[s]);
-            }
-            s = number[s];
-        }
-        for (std::uint32_t t = 0; t < sheets.of_triangle.size(); ++t)
-            if (const std::uint32_t s = sheets.of_triangle[t]; s != kNone)
-                sheets.members[next[s]++] = t;
-        sheets.first = std::move(first);
-    }
-
-    void finish() {
-        Sheets& sheets = scene_.sheets;
-        if (sheet_count_ == 0) {
-            sheets = {};
-            return;
-        }
-        number_in_order();
-        sheets.frame.resize(sheet_count_);
-        sheets.ball.resize(sheet_count_);
-        tbb::parallel_for(std::size_t{0}, std::size_t{sheet_count_},
-                          [&](std::size_t s) { frame_sheet(s); });
-    }
-
     Scene& scene_;
-    glm::dvec3 centre_{};
-    double radius_ = 0, tolerance_ = 0;
+    const SheetScale& scale_;
+    std::uint32_t begin_, count_;  // of the triangles; all others here are numbered from there
     std::vector<FacePlane> planes_;
     int slot_bits_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Resident> residents_;
-    std::uint32_t sheet_count_ = 0;
+    std::uint32_t sheet_count_;
 };
 
 }  // namespace
 
-double coplanar_tolerance(const Box& bounds, double rounding) {
-    const double radius = 0.5 * glm::length(bounds.extent());
-    double largest = 0;
-    for (int k = 0; k < 3; ++k)
-        largest = std::max({largest, std::abs(bounds.lo[k]), std::abs(bounds.hi[k])});
-    return std::max({kToleranceOfSize * radius, kToleranceOfCoordinate * largest,
-                     kToleranceOfRounding * rounding});
+SheetScale::SheetScale(const Box& bounds, double rounding)
+    : centre(bounds.centre()),
+      radius(0.5 * glm::length(bounds.extent())),
+      tolerance(rounding_of(bounds, rounding)) {}
+
+bool SheetScale::holds(const FacePlane& plane, const glm::dvec3& point) const {
+    return !(std::abs(glm::dot(plane.normal, point - centre) - plane.offset) > tolerance);
 }
 
-void build_sheets(Scene& scene) { SheetBuilder(scene).run(); }
+bool are_parallel(const glm::dvec3& n, const glm::dvec3& m) {
+    return !(1 - std::abs(glm::dot(n, m)) > 0.5 * kNormalTolerance * kNormalTolerance);
+}
+
+double heading(const glm::dvec3& normal) {
+    return glm::dot(normal, glm::dvec3{0.3717, 0.5423, 0.7535});
+}
+
+FacePlane plane_of_face(const Scene& scene, const SheetScale& scale, std::uint32_t triangle) {
+    const Corners c = scene.triangles[triangle];
+    const glm::dvec3 p = scene.positions[c.x];
+    const glm::dvec3 n = glm::cross(scene.positions[c.y] - p, scene.positions[c.z] - p);
+    const double length = glm::length(n);
+    const bool dropped = !scene.degenerate.empty() && scene.degenerate[triangle] != 0;
+    if (dropped || !(length > 0) || !std::isfinite(length)) return {};
+    const glm::dvec3 unit = n / length;
+    return {unit, glm::dot(unit, p - scale.centre), length};
+}
+
+void find_part_sheets(Scene& scene, const SheetScale& scale, TriangleRun part,
+                      std::vector<std::uint32_t>& seeds) {
+    SheetBuilder(scene, scale, part).run(seeds);
+}
+
+std::vector<TriangleRun> parts_of(const Scene& scene) {
+    std::vector<TriangleRun> parts;
+    std::uint32_t last = kNone;
+    for (const Object& object : scene.objects) {
+        if (parts.empty() || object.part != last) parts.push_back({object.first_triangle, 0});
+        parts.back().count += object.triangle_count;
+        last = object.part;
+    }
+    return parts;
+}
+
+void build_sheets(Scene& scene) {
+    scene.sheets = {};
+    const SheetScale scale(scene.bounds, scene.rounding);
+    if (scene.bounds.empty() || !(scale.radius > 0)) return;
+    std::vector<std::uint32_t> seeds;
+    const std::vector<TriangleRun> parts = parts_of(scene);
+    for (const TriangleRun& part : parts) find_part_sheets(scene, scale, part, seeds);
+    if (parts.size() > 1) join_sheets_of_parts(scene, scale, parts, seeds);
+    frame_sheets(scene);
+}
 
 }  // namespace sightline

@@ -2,6 +2,9 @@
 // the forward edges (from the lower to the higher vertex) are grouped by their lower vertex, then
 // every backward edge must find exactly one of them, which nobody else has found. Faces that share
 // an edge form parts; each part must enclose a positive volume, or it is inside out.
+//
+// What fails is looked at once more: without the copies of equal faces, and with those turned that
+// are there both ways round. If it fails again, positions may have to be joined.
 #include "scene/topology.hpp"
 
 #include <algorithm>
@@ -13,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/equal_faces.hpp"
 #include "scene/joined_mesh.hpp"
 
 namespace sightline {
@@ -129,7 +133,7 @@ bool ClosednessTest::volumes_positive() {
         double volume = 0, size = 0;
     };
     std::vector<Sum> sums(mesh_.triangles.size());
-    const glm::dvec3 origin = mesh_.points[0];
+    const glm::dvec3 origin = point(0, 0);
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
         if (is_dropped(t)) continue;
         const glm::dvec3 a = point(t, 0) - origin, b = point(t, 1) - origin,
@@ -147,16 +151,71 @@ bool ClosednessTest::volumes_positive() {
     return true;
 }
 
-/// `dropped` has one byte a triangle of the scene, or nothing when none is dropped.
-void find_closed(Scene& scene, bool joined, std::span<const std::uint8_t> dropped) {
-    ObjectJoiner joiner(scene, joined);
-    for (Object& object : scene.objects) {
-        const auto mine = dropped.empty()
-                              ? dropped
-                              : dropped.subspan(object.first_triangle, object.triangle_count);
-        object.closed = ClosednessTest(joiner.join(object), mine).closed();
+/// Judges one object after another.
+class ObjectJudge {
+public:
+    /// `dropped` has one byte a triangle of the scene, or nothing when none is dropped.
+    ObjectJudge(Scene& scene, bool joined, std::span<const std::uint8_t> dropped, double weld)
+        : scene_(scene), joiner_(scene, joined), dropped_(dropped), weld_(weld) {
+        scene.equal_faces.clear();
+        scene.counts.equal_faces = 0;
     }
-}
+
+    Joins judge_all() {
+        for (Object& object : scene_.objects) {
+            object.closed = object.two_sided = false;
+            if (object.triangle_count > 0) judge(object);
+        }
+        return std::move(joins_);
+    }
+
+private:
+    void judge(Object& object) {
+        const JoinedMesh mesh = joiner_.join(object);
+        auto dropped = dropped_;
+        if (!dropped.empty())
+            dropped = dropped.subspan(object.first_triangle, object.triangle_count);
+        object.closed = ClosednessTest(mesh, dropped).closed();
+        if (object.closed) return;
+        std::vector<std::uint8_t> copies;
+        const EqualFaces equal = find_equal_faces(scene_, object, mesh);
+        if (equal.count > 0) {
+            note(equal, object);
+            copies = without_copies(dropped, equal);
+            dropped = copies;
+            std::vector<Corners> turned;
+            if (equal.two_sided) turned = turned_alike(mesh, equal.bits, dropped);
+            const JoinedMesh distinct{
+                mesh.points, equal.two_sided ? std::span<const Corners>(turned) : mesh.triangles};
+            object.closed = ClosednessTest(distinct, dropped).closed();
+        }
+        if (!object.closed && weld_ > 0)
+            find_joins(joiner_, object, mesh, dropped, scene_.rounding, weld_, joins_);
+    }
+
+    void note(const EqualFaces& equal, Object& object) {
+        object.two_sided = equal.two_sided;
+        scene_.counts.equal_faces += equal.count;
+        scene_.equal_faces.resize(scene_.triangles.size(), 0);
+        std::ranges::copy(equal.bits, scene_.equal_faces.begin() + object.first_triangle);
+    }
+
+    [[nodiscard]] static std::vector<std::uint8_t> without_copies(
+        std::span<const std::uint8_t> dropped, const EqualFaces& equal) {
+        std::vector<std::uint8_t> copies(equal.bits.size());
+        for (std::size_t t = 0; t < copies.size(); ++t) {
+            const bool is_copy = (equal.bits[t] & (kRepeated | kTurnedOver)) != 0;
+            copies[t] = is_copy || (!dropped.empty() && dropped[t] != 0) ? 1 : 0;
+        }
+        return copies;
+    }
+
+    Scene& scene_;
+    ObjectJoiner joiner_;
+    std::span<const std::uint8_t> dropped_;
+    double weld_;
+    Joins joins_;
+};
 
 }  // namespace
 
@@ -166,11 +225,11 @@ void find_closed_objects(Scene& scene) {
         const auto& p = scene.positions;
         return is_degenerate(p[c.x], p[c.y], p[c.z]) ? std::uint8_t{1} : std::uint8_t{0};
     });
-    find_closed(scene, false, dropped);
+    static_cast<void>(ObjectJudge(scene, false, dropped, 0).judge_all());
 }
 
-void find_closed_objects(Scene& scene, bool joined) {
-    find_closed(scene, joined, scene.degenerate);
+Joins find_closed_objects(Scene& scene, bool joined, double weld) {
+    return ObjectJudge(scene, joined, scene.degenerate, weld).judge_all();
 }
 
 }  // namespace sightline

@@ -49,6 +49,7 @@ public:
           first_row_(first_row) {}
 
     void take(std::uint32_t x, std::uint32_t y, std::span<const Fragment> fragments) override {
+        anything_seen = anything_seen || !fragments.empty();
         shade(x, y, fragments);
         const PixelShares& shares = resolver_.resolve(x, y, fragments, opacities_);
         glm::dvec4 sum = shares.rest * glm::dvec4(background_);
@@ -70,7 +71,7 @@ public:
         return std::move(deep_);
     }
 
-    bool deep = false;
+    bool deep = false, anything_seen = false;
 
 private:
     void shade(std::uint32_t x, std::uint32_t y, std::span<const Fragment> fragments) {
@@ -167,6 +168,7 @@ void AntialiasedRows::resolve(std::uint32_t first, std::uint32_t count,
         PixelMaker maker(screen_, shader_, options_, pixels_.data() + row * width, first + row);
         maker.deep = deep_;
         fragments_->visit_band(first / unit() + b, maker);
+        if (maker.anything_seen) anything_seen_ = true;
         if (!deep_) return;
         Band& band = bands_[b];
         band.counts.assign(rows * width, 0);

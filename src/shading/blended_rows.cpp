@@ -33,6 +33,7 @@ public:
         glm::vec4* colors = colors_.data() + start;
         const bool translucent = !translucent_.empty() && translucent_[run.id] != 0;
         over_.paint(run, owners, [&](std::int32_t first, std::int32_t end) {
+            anything_seen_ = true;
             // Nobody is hidden by a translucent owner, so it need not be remembered.
             std::fill(owners + first, owners + end, translucent ? kNone : run.id);
             if (const PixelColor* constant = cache_.constant_color(run.id)) {
@@ -51,6 +52,7 @@ public:
     }
 
     [[nodiscard]] const std::vector<glm::vec4>& colors() const { return colors_; }
+    [[nodiscard]] bool anything_seen() const { return anything_seen_; }
 
 private:
     [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(units_.columns); }
@@ -69,6 +71,7 @@ private:
     std::int32_t first_row_;
     std::vector<std::uint32_t> owners_;  // the opaque surface that is seen, if one is
     std::vector<glm::vec4> colors_;
+    bool anything_seen_ = false;
 };
 
 }  // namespace
@@ -97,6 +100,7 @@ void BlendedRows::resolve_band(std::uint32_t band, glm::vec4* out) {
     const std::int32_t rows = std::min(units_.rows - first, height);
     BlendSink sink(screen_, units_, shader_, translucent_, background_, first, rows);
     layers_->visit_band(band, sink);
+    if (sink.anything_seen()) anything_seen_ = true;
     const std::uint32_t n = grid_.per_axis, width = grid_.resolution.width;
     const std::size_t columns = grid_.columns();
     const glm::vec4* samples = sink.colors().data();

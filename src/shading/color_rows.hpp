@@ -2,6 +2,7 @@
 // a sample.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <glm/vec4.hpp>
 #include <span>
@@ -27,8 +28,14 @@ public:
     /// Row y of those held: linear, premultiplied.
     [[nodiscard]] virtual const glm::vec4* row(std::uint32_t y) const = 0;
 
+    /// Whether a surface covers something of the rows that were held so far.
+    [[nodiscard]] bool anything_seen() const { return anything_seen_; }
+
     /// Appends what was counted so far to the counters of the options.
     virtual void report() = 0;
+
+protected:
+    std::atomic<bool> anything_seen_{false};  // several threads note it
 };
 
 }  // namespace sightline

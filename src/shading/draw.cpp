@@ -113,6 +113,7 @@ public:
 
     [[nodiscard]] Status run(const ScreenScene& screen, const Algorithm& algorithm,
                              std::uint32_t group_rows) {
+        if (options_.anything_seen != nullptr) *options_.anything_seen = false;
         enter(DrawStage::resolve);
         if (Status done = open_sources(screen, algorithm); !done) return done;
         // Where there are no colours, or nothing at the centres, no sink asks for them.
@@ -192,6 +193,7 @@ private:
         for (GroupSource& samples : sources_) {
             if (Status done = samples.resolve(done_, count); !done) return done;
         }
+        note_what_is_seen();
         // Only now, so that nothing of a view that can't be resolved touches the disk.
         for (std::size_t i = sinks_.size(); i < files_.size(); ++i) {
             auto sink = open_sink(files_[i], source);
@@ -204,6 +206,12 @@ private:
             if (Status done = sink->finish(); !done) return done;
         }
         return success();
+    }
+
+    void note_what_is_seen() const {
+        if (options_.anything_seen == nullptr || *options_.anything_seen) return;
+        *options_.anything_seen =
+            colors_ != nullptr ? colors_->anything_seen() : sees_anything(sources_.front().held());
     }
 
     const DrawOptions& options_;

@@ -12,10 +12,15 @@
 #include "shading/box_filter.hpp"
 #include "shading/picture_rows.hpp"
 #include "shading/sample_shader.hpp"
+#include "shading/stream_plan.hpp"
 #include "visibility/sample_units.hpp"
 
 namespace sightline {
 namespace {
+
+/// The divisor of a quadric's depth, which is whole: beyond that of any triangle. At a tie the
+/// triangle is seen, for its number is lower in the whole.
+constexpr std::int64_t kOfQuadric = std::numeric_limits<std::int64_t>::max();
 
 /// z + rest / divisor.
 struct ExactDepth {
@@ -24,6 +29,8 @@ struct ExactDepth {
 
     [[nodiscard]] bool is_before(const ExactDepth& other) const {
         if (z != other.z) return z < other.z;
+        if (rest == 0 && other.rest == 0)
+            return divisor != kOfQuadric && other.divisor == kOfQuadric;
         return Int128{rest} * other.divisor < Int128{other.rest} * divisor;
     }
 };
@@ -64,6 +71,7 @@ public:
             ExactDepth depth;
             if (part.is_quadric(id)) {
                 depth.z = static_cast<std::int32_t>(seen.depth[start + i]);
+                depth.divisor = kOfQuadric;
             } else {
                 if (id != last) plane = part.plane(last = id);
                 depth = depth_of(plane, x, y);
@@ -106,13 +114,15 @@ MapsWanted maps_for(std::span<const PictureFile> files) {
 }  // namespace
 
 struct StreamedPicture::State {
-    State(const Camera& camera, const DrawOptions& drawing, std::span<const PictureFile> pictures)
+    State(const Camera& camera, const DrawOptions& drawing, std::span<const PictureFile> pictures,
+          const StreamPlan::State* of_whole)
         : options(drawing),
           files(pictures),
           maps(maps_for(pictures)),
           near(camera.near_plane),
           far(camera.far_plane),
-          size(camera.resolution) {
+          size(camera.resolution),
+          whole(of_whole) {
         const bool color = std::ranges::any_of(
             files, [](const PictureFile& file) { return file.content == PictureContent::color; });
         if (color) {
@@ -145,6 +155,8 @@ struct StreamedPicture::State {
         });
     }
 
+    void note_seen(const Visibility& seen) { anything_seen = anything_seen || sees_anything(seen); }
+
     void take_maps(const ScreenScene& part, const Visibility& seen) {
         const RowMaps of_part(part, seen, is_smooth(options.shading.shading));
         tbb::enumerable_thread_specific<std::vector<float>> depth_rows;
@@ -166,10 +178,29 @@ struct StreamedPicture::State {
                                if (maps.depth) depth.pixels[at] = depths[column];
                                if (maps.normals) normals.pixels[at] = directions[column];
                                if (!maps.ids) return;
-                               triangles.pixels[at] = first_id + id;
-                               objects.pixels[at] = first_object + part.scene().object_of(id);
+                               triangles.pixels[at] = number_of(part, id);
+                               objects.pixels[at] = object_of(part, id);
                            });
         });
+    }
+
+    // In the whole, quadrics come after all triangles, and so do their objects.
+    [[nodiscard]] std::uint32_t number_of(const ScreenScene& part, std::uint32_t id) const {
+        if (whole == nullptr) return first_id + first_quadric + id;
+        if (!part.is_quadric(id)) return first_id + id;
+        return whole->triangles + first_quadric + (id - part.scene().triangle_count());
+    }
+    [[nodiscard]] std::uint32_t object_of(const ScreenScene& part, std::uint32_t id) const {
+        const Scene& scene = part.scene();
+        if (whole == nullptr) return first_object + first_quadric + scene.object_of(id);
+        if (!part.is_quadric(id)) return first_object + scene.object_of(id);
+        return whole->meshes + first_quadric + (id - scene.triangle_count());
+    }
+    void go_on(const Scene& part) {
+        const auto quadrics = static_cast<std::uint32_t>(part.quadrics.size());
+        first_id += part.triangle_count();
+        first_object += static_cast<std::uint32_t>(part.objects.size()) - quadrics;
+        first_quadric += quadrics;
     }
 
     [[nodiscard]] ColorImage picture() const {
@@ -266,12 +297,16 @@ struct StreamedPicture::State {
     DepthImage depth;
     IdImage triangles, objects;
     NormalImage normals;
-    std::uint32_t first_id = 0, first_object = 0;  // of the next part
+    const StreamPlan::State* whole;  // null without a plan
+    // Triangles, objects with triangles, and quadrics of the parts before.
+    std::uint32_t first_id = 0, first_object = 0, first_quadric = 0;
+    bool anything_seen = false;
 };
 
 StreamedPicture::StreamedPicture(const Camera& camera, const DrawOptions& options,
-                                 std::span<const PictureFile> files)
-    : state_(std::make_unique<State>(camera, options, files)) {}
+                                 std::span<const PictureFile> files, const StreamPlan* plan)
+    : state_(std::make_unique<State>(camera, options, files,
+                                     plan == nullptr ? nullptr : plan->state_.get())) {}
 StreamedPicture::~StreamedPicture() = default;
 
 Status StreamedPicture::add(const ScreenScene& part) {
@@ -285,6 +320,7 @@ Status StreamedPicture::add(const ScreenScene& part) {
         Status done = resolve(default_algorithm(), part, resolving, seen);
         if (!done) return done;
         state.take_colors(part, seen);
+        state.note_seen(seen);
     }
     if (state.centres) {
         resolving.samples_per_axis = 1;
@@ -293,12 +329,13 @@ Status StreamedPicture::add(const ScreenScene& part) {
             if (!done) return done;
         }
         state.take_maps(part, seen);
+        if (!state.colors) state.note_seen(seen);
     }
-    const Scene& scene = part.scene();
-    state.first_id += scene.triangle_count() + static_cast<std::uint32_t>(scene.quadrics.size());
-    state.first_object += static_cast<std::uint32_t>(scene.objects.size());
+    state.go_on(part.scene());
     return success();
 }
+
+bool StreamedPicture::anything_seen() const { return state_->anything_seen; }
 
 Status StreamedPicture::write() const {
     for (const PictureFile& file : state_->files)

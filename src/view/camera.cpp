@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "math/coplanar.hpp"
 #include "math/elementary.hpp"
 #include "sightline/scene.hpp"
 #include "view/frames.hpp"
@@ -19,7 +20,11 @@ namespace {
 
 constexpr double kFitMargin = 1.05;    // of the bounding sphere
 constexpr double kDepthMargin = 1e-3;  // of the depth range, on both sides of near and far
-constexpr double kNearOverFar = 1e-4;  // smallest near in perspective when it is fitted
+
+// A box that stays farther than this share of far from the eye's plane needs no closer look.
+constexpr double kClearNear = 1e-4;
+// The view whose depths near is fitted to is larger by this share, for what is drawn at its sides.
+constexpr double kViewMargin = 1e-3;
 
 Error wrong(std::string message) { return {ErrorKind::bad_option, std::move(message)}; }
 
@@ -97,6 +102,7 @@ Aim choose_aim(const CameraOptions& o, const Ball& ball, Projection projection) 
 Status set_frame(Camera& camera, const Aim& aim) {
     if (glm::length(aim.gaze) == 0)
         return wrong("the camera stands at the centre of the scene: give --target or --direction");
+    camera.aim = aim.gaze;
     camera.back = -glm::normalize(aim.gaze);
     const glm::dvec3 across = glm::cross(glm::normalize(aim.up), camera.back);
     if (!(glm::length(across) > 1e-9))
@@ -146,8 +152,23 @@ void set_fit(Camera& camera, const CameraOptions& o, const Ball& ball) {
     }
 }
 
+// Where the box comes close to the eye's plane, or lies around the eye, it says too little: what is
+// seen may still be far away.
+double fit_near(const Camera& camera, const CameraOptions& o, double box_near,
+                const DepthsInView& depths) {
+    const double far = std::min(camera.far_plane, o.far_plane.value_or(camera.far_plane));
+    const double least = kLeastNear * far;
+    if (box_near >= kClearNear * camera.far_plane || o.near_plane || !depths)
+        return std::max(box_near, least);
+    Camera wider = camera;
+    wider.view_height *= 1 + kViewMargin;
+    const DepthRange range = depths(wider);
+    return std::max(range.empty() ? box_near : (1 - kDepthMargin) * range.nearest, least);
+}
+
 // Near and far hug the box: 30 bits of 1/depth are wasted otherwise.
-Status set_depths(Camera& camera, const CameraOptions& o, const Box& bounds) {
+Status set_depths(Camera& camera, const CameraOptions& o, const Box& bounds,
+                  const DepthsInView& depths) {
     double lo = 0, hi = 1;
     if (!bounds.empty()) {
         const double middle = camera.depth_of(bounds.centre());
@@ -164,7 +185,7 @@ Status set_depths(Camera& camera, const CameraOptions& o, const Box& bounds) {
     camera.far_plane = hi + margin;
     if (camera.is_perspective()) {
         if (camera.far_plane <= 0) camera.far_plane = 1;  // everything lies behind the eye
-        camera.near_plane = std::max(camera.near_plane, kNearOverFar * camera.far_plane);
+        camera.near_plane = fit_near(camera, o, camera.near_plane, depths);
     }
     if (o.near_plane) camera.near_plane = *o.near_plane;
     if (o.far_plane) camera.far_plane = *o.far_plane;
@@ -186,7 +207,8 @@ Status set_depths(Camera& camera, const CameraOptions& o, const Box& bounds) {
 
 }  // namespace
 
-Result<Camera> make_camera(const CameraOptions& options, const Box& bounds, Resolution resolution) {
+Result<Camera> make_camera(const CameraOptions& options, const Box& bounds, Resolution resolution,
+                           const DepthsInView& depths) {
     if (Status s = check_vectors(options); !s) return s.error();
     if (Status s = check_numbers(options, resolution); !s) return s.error();
     Camera camera;
@@ -199,13 +221,14 @@ Result<Camera> make_camera(const CameraOptions& options, const Box& bounds, Reso
     set_fit(camera, options, ball);
     if (!finite(camera.eye) || !std::isfinite(camera.view_height))
         return wrong("the camera lies too far away: its coordinates overflow");
-    if (Status s = set_depths(camera, options, bounds); !s) return s.error();
+    if (Status s = set_depths(camera, options, bounds, depths); !s) return s.error();
     return camera;
 }
 
 Result<Camera> make_camera(const CameraOptions& options, const Scene& scene,
                            Resolution resolution) {
-    return make_camera(relative_to(options, scene.offset), scene.reach, resolution);
+    return make_camera(relative_to(options, scene.offset), scene.reach, resolution,
+                       [&](const Camera& view) { return depths_in_view(scene, view); });
 }
 
 CameraOptions relative_to(CameraOptions options, glm::dvec3 offset) {
@@ -243,6 +266,12 @@ glm::dvec2 Camera::pixel_of(glm::dvec3 point) const {
 glm::dvec3 Camera::view_vector(glm::dvec3 point) const {
     if (is_perspective()) return point - eye;
     return gaze() - oblique.x * right - oblique.y * up;
+}
+
+bool Camera::sees_edge_on(const std::array<glm::dvec3, 3>& corners) const {
+    if (is_perspective()) return math::is_in_plane(corners, eye);
+    return math::is_parallel_to_plane(
+        corners, projection == Projection::orthographic ? aim : view_vector(corners[0]));
 }
 
 glm::dvec3 Camera::unproject(glm::dvec2 pixel, double depth) const {

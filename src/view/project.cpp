@@ -49,6 +49,7 @@ public:
         screen_.counts_.triangles = scene.triangles.size();
         transform_ = make_transform(camera, screen_.subpixel_bits_);
         if (options.page) transform_.crop();
+        drops_copies_ = options.page && !scene.equal_faces.empty();
     }
 
     void run() {
@@ -66,7 +67,8 @@ private:
         kDegenerate,
         kCulled = ScreenScene::kCulledSide,
         kOutsideVolume,
-        kClipped
+        kClipped,
+        kCopy
     };
 
     [[nodiscard]] const Scene& scene() const { return *screen_.scene_; }
@@ -96,7 +98,7 @@ private:
     // Back faces of an object are never seen when it is closed, opaque and not cut open by the
     // volume (a guard band cuts off screen, but telling the planes apart here would gain little).
     [[nodiscard]] bool hides_its_back(const Object& object) const {
-        if (!object.closed) return false;
+        if (!object.closed || object.two_sided) return false;
         if (is_translucent(scene(), object)) return false;
         if (!some_outside_) return true;
         for (std::uint32_t t = 0; t < object.triangle_count; ++t)
@@ -122,24 +124,32 @@ private:
         return {scene().positions[c.x], scene().positions[c.y], scene().positions[c.z]};
     }
 
+    // On a page equal faces are one face. A picture keeps them all: where they are translucent each
+    // is a layer of its own.
+    [[nodiscard]] bool is_copy(std::uint32_t t, Facing culled_side) const {
+        if (!drops_copies_) return false;
+        const unsigned bits = scene().equal_faces[t];
+        // Where a side is removed, one of a face and what is turned over remains.
+        return (bits & kRepeated) != 0 ||
+               ((bits & kTurnedOver) != 0 && culled_side == Facing::edge_on);
+    }
+
     [[nodiscard]] Skip fate_of(std::uint32_t t, Facing culled_side, ProjectCounts& counts) const {
         if (!scene().degenerate.empty() && scene().degenerate[t] != 0) {
             ++counts.degenerate;
             return kDegenerate;
         }
-        if (culled_side != Facing::edge_on) {
-            const Facing side = facing(screen_.camera_, corners_of(t));
-            if (side == Facing::back) ++counts.back_facing;
-            if (side == culled_side) {
-                ++counts.culled;
-                return kCulled;
-            }
+        if (is_copy(t, culled_side)) return kCopy;
+        if (culled_side != Facing::edge_on &&
+            facing(screen_.camera_, corners_of(t)) == culled_side) {
+            ++counts.culled;
+            return kCulled;
         }
         return some_outside_ && has_outside_corner(t) ? kClipped : kDraw;
     }
 
     void mark_triangles() {
-        if (scene().degenerate.empty() && !any_culling_ && !some_outside_) return;
+        if (scene().degenerate.empty() && !any_culling_ && !some_outside_ && !drops_copies_) return;
         screen_.skip_.assign(scene().triangles.size(), kDraw);
         for (std::size_t o = 0; o < scene().objects.size(); ++o) {
             const Object& object = scene().objects[o];
@@ -156,12 +166,10 @@ private:
                 },
                 [](ProjectCounts a, const ProjectCounts& b) {
                     a.degenerate += b.degenerate;
-                    a.back_facing += b.back_facing;
                     a.culled += b.culled;
                     return a;
                 });
             screen_.counts_.degenerate += sum.degenerate;
-            screen_.counts_.back_facing += sum.back_facing;
             screen_.counts_.culled += sum.culled;
         }
     }
@@ -193,6 +201,7 @@ private:
         std::vector<ScreenPoint> polygon;
         for (std::uint32_t t = 0; t < scene().triangle_count(); ++t) {
             if (screen_.skip_[t] != kClipped) continue;
+            if (screen_.is_edge_on(t)) continue;
             polygon.clear();
             clip_triangle(transform_, corners_of(t), polygon);
             if (polygon.size() >= 3)
@@ -254,6 +263,7 @@ private:
     Cull cull_;
     bool some_outside_ = false;
     bool any_culling_ = false;
+    bool drops_copies_ = false;
     std::vector<Facing> culled_side_;  // by object; edge_on: both sides are drawn
 };
 

@@ -13,6 +13,12 @@ Plane ScreenScene::plane(std::uint32_t id) const {
     return plane_through(point(c.x), point(c.y), point(c.z));
 }
 
+bool ScreenScene::is_edge_on(std::uint32_t id) const {
+    const Corners c = scene_->triangles[id];
+    const auto& positions = scene_->positions;
+    return camera_.sees_edge_on({positions[c.x], positions[c.y], positions[c.z]});
+}
+
 double ScreenScene::metric_depth(double z) const {
     const double n = camera_.near_plane, f = camera_.far_plane;
     const double t = z / kDepthMax;

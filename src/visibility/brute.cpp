@@ -32,10 +32,10 @@ struct Candidate {
 std::vector<Candidate> triangles_of_row(const ScreenScene& screen, std::int32_t y) {
     std::vector<Candidate> row;
     for (std::uint32_t k = 0; k < screen.triangle_count(); ++k) {
-        if (!screen.drawable(k)) continue;
         const Corners c = screen.corners(k);
         const ScreenPoint p = screen.point(c.x), q = screen.point(c.y), r = screen.point(c.z);
         if (std::min({p.y, q.y, r.y}) > y || std::max({p.y, q.y, r.y}) < y) continue;
+        if (!screen.drawable(k)) continue;
         row.push_back({OrientedTriangle(p, q, r), std::min({p.x, q.x, r.x}),
                        std::max({p.x, q.x, r.x}), screen.id(k)});
     }
@@ -103,7 +103,7 @@ void resolve_brute(const ScreenScene& screen, const ResolveOptions& options, Vis
 
     std::uint64_t total = 0;
     for (const std::uint64_t count : comparisons) total += count;
-    count(options, "samples", grid.count());
+    count(options, "samples decided", grid.count());
     count(options, "exact comparisons", total);
 }
 

@@ -54,7 +54,7 @@ std::vector<Piece> sort_by_farthest(const ScreenScene& screen, const SampleUnits
         if (options.observer != nullptr)
             options.observer->step({StepKind::polygon_painted, entry.id});
     }
-    count(options, "polygons", pieces.size());
+    count(options, "polygons sorted", pieces.size());
     return pieces;
 }
 

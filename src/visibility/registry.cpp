@@ -174,6 +174,10 @@ Result<std::unique_ptr<LayerSource>> open_layers(const Algorithm& algorithm,
     return algorithm.open_layers(screen, {screen.resolution(), options.samples_per_axis}, options);
 }
 
+bool sees_anything(const Visibility& visibility) {
+    return std::ranges::any_of(visibility.ids, [](std::uint32_t id) { return id != kNone; });
+}
+
 Status resolve(const Algorithm& algorithm, const ScreenScene& screen, const ResolveOptions& options,
                Visibility& out) {
     if (Status valid = check(algorithm, screen, options); !valid) return valid;

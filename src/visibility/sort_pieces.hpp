@@ -36,7 +36,7 @@ enum class SortCount : std::uint8_t {
 };
 
 inline constexpr std::array kSortCountNames{
-    CountName{"polygons"},
+    CountName{"polygons sorted"},
     CountName{"pairs with overlapping extents"},
     CountName{"pairs tested against planes"},
     CountName{"pairs tested for disjoint projections"},

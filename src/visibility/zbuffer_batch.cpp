@@ -144,6 +144,7 @@ private:
         const VI sy = hn::Add(hn::ShiftLeftSame(b.row0, step_bits), set(grid_.position(tile_.row)));
         const Edges edges = edges_at(t, doubled, sx, sy, step_bits);
         kept = hn::AndNot(excluded(edges, b), kept);
+        kept = hn::AndNot(edge_on_lanes(input_.screen, t, doubled, kept), kept);
         if (hn::AllFalse(kI, kept)) return;
         Planes plane = own_planes(t, sx, sy), shared;
         const M served = shared_planes(input_, t.sheet, sx, sy, shared);

@@ -13,6 +13,8 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
+
 #include "visibility/zbuffer_stages.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -139,6 +141,30 @@ HWY_INLINE M within(const Triangles& t, std::int32_t extent) {
 HWY_INLINE VI doubled_area(const Triangles& t) {
     return hn::Sub(hn::Mul(hn::Sub(t.x[1], t.x[0]), hn::Sub(t.y[2], t.y[0])),
                    hn::Mul(hn::Sub(t.y[1], t.y[0]), hn::Sub(t.x[2], t.x[0])));
+}
+
+// Lanes of `asked` whose triangle is seen edge-on in the world: it covers nothing. One by one, but
+// only those are asked that are thin enough on the screen, and who calls this asks for triangles
+// that seem to cover something.
+HWY_NOINLINE M edge_on_among(const ScreenScene& screen, VI number, M thin) {
+    HWY_ALIGN std::int32_t numbers[kLanes], found[kLanes] = {};
+    hn::Store(number, kI, numbers);
+    for (std::uint32_t rest = bits_of(thin); rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        found[i] = screen.is_edge_on(static_cast<std::uint32_t>(numbers[i])) ? 1 : 0;
+    }
+    return hn::Ne(hn::Load(kI, found), set(0));
+}
+
+HWY_INLINE M edge_on_lanes(const ScreenScene& screen, const Triangles& t, VI doubled, M asked) {
+    const VI width = hn::Sub(greatest(t.x), least(t.x)),
+             height = hn::Sub(greatest(t.y), least(t.y));
+    // 2 (width + height) + 16, see ScreenScene::thin_area().
+    static_assert(ScreenScene::thin_area(3, 4) == 2 * (3 + 4) + 16);
+    const VI most = hn::Add(hn::ShiftLeft<1>(hn::Add(width, height)), set(16));
+    const M thin = hn::AndNot(hn::Gt(hn::Abs(doubled), most), asked);
+    if (HWY_LIKELY(hn::AllFalse(kI, thin))) return thin;
+    return edge_on_among(screen, t.number, thin);
 }
 
 // Edge functions at a sample, less one where the edge does not own its points, divided by the step;

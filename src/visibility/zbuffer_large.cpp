@@ -87,6 +87,7 @@ Outcome set_up(const ScreenScene& screen, const GridUnits& grid, const Tile& til
         !set_edge(t.q, t.r, x0, y0, grid.step_bits, columns, rows, s.edges[1]) ||
         !set_edge(t.r, t.p, x0, y0, grid.step_bits, columns, rows, s.edges[2]))
         return Outcome::empty;
+    if (!screen.drawable(k)) return Outcome::empty;
 
     s.id = screen.id(k);
     s.plane = screen.plane(s.id);

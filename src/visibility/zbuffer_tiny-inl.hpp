@@ -108,8 +108,13 @@ private:
         edges.at[0] = hn::IfThenElse(wanted, edges.at[0], set(-(1 << 30)));
 
         M covered[kSide * kSide];
-        const M any = find_covered(edges, covered);
+        M any = find_covered(edges, covered);
         if (hn::AllFalse(kI, any)) return;
+        const M edge_on = edge_on_lanes(input_.screen, t, doubled, any);
+        if (HWY_UNLIKELY(!hn::AllFalse(kI, edge_on))) {
+            any = hn::AndNot(edge_on, any);
+            for (M& mask : covered) mask = hn::AndNot(edge_on, mask);
+        }
         const Planes plane = planes_of(t, any, sx, sy);
         const M regular =
             depth_over(plane, set(kSide - 1), set(kSide - 1), grid_.step_bits).regular;

@@ -154,6 +154,44 @@ TEST_F(CompositeCommand, ReportsForPeopleAndPrograms) {
     EXPECT_NE(deep.err.find("fog.exr"), std::string::npos);
 }
 
+TEST_F(CompositeCommand, PartsOfAPictureAndOtherBackgrounds) {
+    render({"cube.obj"}, "whole.exr");
+    render({"tower.obj"}, "tower.exr", "120x90", {"--background", "none"});
+    render({"cube.obj", "tower.obj"}, "all.exr");
+    // The first with a data window of its own: its right half.
+    auto half = read_picture<FlatPicture>("whole.exr");
+    const auto cut = [](auto& image) {
+        auto right = image;
+        right.width = 60;
+        right.pixels.clear();
+        for (std::uint32_t y = 0; y < image.height; ++y) {
+            const auto row = image.row(y).subspan(60);
+            right.pixels.insert(right.pixels.end(), row.begin(), row.end());
+        }
+        image = std::move(right);
+    };
+    cut(half.color);
+    cut(half.depth);
+    half.placement.origin = {60, 0};
+    ASSERT_TRUE(write_exr(path("half.exr"), layers_of(half)).ok());
+    // The second with depth 0 where nothing is seen, as other programs have it.
+    auto zeros = read_picture<FlatPicture>("tower.exr");
+    for (float& z : zeros.depth.pixels) z = std::isfinite(z) ? z : 0;
+    ASSERT_TRUE(write_exr(path("zeros.exr"), layers_of(zeros)).ok());
+    succeed({"zeros.exr", "half.exr", "-o", "out.exr"});
+    const auto out = read_picture<FlatPicture>("out.exr");
+    const auto all = read_picture<FlatPicture>("all.exr");
+    EXPECT_EQ(out.placement.origin, glm::ivec2(0, 0));
+    ASSERT_EQ(out.color.width, 120u);
+    for (std::uint32_t y = 0; y < 90; ++y) {
+        for (std::uint32_t x = 60; x < 120; ++x) {
+            ASSERT_EQ(out.depth.at(x, y), all.depth.at(x, y)) << x << ' ' << y;
+            const bool seen = std::isfinite(all.depth.at(x, y));
+            ASSERT_EQ(out.color.at(x, y), seen ? all.color.at(x, y) : glm::vec4(0));
+        }
+    }
+}
+
 TEST_F(CompositeCommand, DeepFilesAreMergedAndFlattened) {
     write_deep("a.exr", 0);
     write_deep("b.exr", 0.25f);

@@ -63,6 +63,8 @@ TEST_F(Data, InfoOfACube) {
     EXPECT_EQ(object["triangles"], 12);
     EXPECT_EQ(object["polygons"], 6);
     EXPECT_EQ(object["degenerate_triangles"], 0);
+    EXPECT_EQ(object["joined_vertices"], 0);
+    EXPECT_EQ(object["equal_faces"], 0);
     EXPECT_EQ(object["objects"][0]["name"], "cube");
     EXPECT_EQ(object["objects"][0]["closed"], true);
     EXPECT_EQ(object["bounds"]["min"], json({0.0, 0.0, 0.0}));

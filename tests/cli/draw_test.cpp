@@ -59,6 +59,26 @@ TEST_F(DrawCommand, ACubeShowsNineEdgesAndHidesThree) {
     EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
 }
 
+TEST_F(DrawCommand, FacesThereForEachSideAreOneFace) {
+    write("both.obj", kCube + "f 1 2 3 4\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 4 8 7 3\nf 8 5 1 4\n");
+    for (const char* edges : {"all", "mesh", "silhouette", "crease"}) {
+        const auto drawn = [&](const char* model) {
+            return report({"draw", model, "--edges", edges, "--projection", "orthographic",
+                           "--hidden", "dashed", "-o", "a.svg"});
+        };
+        const json both = drawn("both.obj"), cube = drawn("cube.obj");
+        for (const char* key : {"edges", "visible_segments", "visible_length", "hidden_length"})
+            EXPECT_EQ(both[key], cube[key]) << edges << ' ' << key;
+    }
+    const auto areas = [&](const char* model) {
+        auto row =
+            table({"visible", model, "--by", "object", "--projection", "orthographic"}).at(1);
+        row.erase(row.begin(), row.begin() + 2);  // object, name
+        return row;
+    };
+    EXPECT_EQ(areas("both.obj"), areas("cube.obj"));
+}
+
 TEST_F(DrawCommand, BothMethodsWriteTheSameFile) {
     const std::vector<std::string> words = {
         "draw",    "cube.obj", "--hidden",          "solid",      "--fill",

@@ -43,7 +43,7 @@ TEST_F(RenderStream, FilesEqualThoseOfTheWholePicture) {
         for (const std::vector<std::string>& options :
              {std::vector<std::string>{"--resolution", "1500x100"},
               {"--resolution", "61x67", "--samples", "4", "--shading", "phong"},
-              {"--resolution", "700x1", "--background", "none"}}) {
+              {"--resolution", "701x1", "--background", "none"}}) {
             render("whole", ending, "zbuffer", options);
             for (const char* algorithm : kRowWise) {
                 render("rows", ending, algorithm, options);

@@ -230,10 +230,8 @@ TEST(VisibleAreas, OfACubeFromTheFrontAndFromACorner) {
         // A hexagon: three faces, each shortened by the square root of 3.
         EXPECT_NEAR(sums_of(areas).visible, 3 * 1600 / std::sqrt(3.0), 0.01);
         EXPECT_NEAR(sums_of(areas).projected, 6 * 1600 / std::sqrt(3.0), 0.02);
-        // Along the silhouette the planes of two faces cross within a step of the page: a back may
-        // show a strip that thin.
-        EXPECT_EQ(std::ranges::count_if(areas, [](const FaceArea& a) { return a.visible > 0.001; }),
-                  6);
+        // Backs that snapping shows along the silhouette are hidden all the same.
+        EXPECT_EQ(std::ranges::count_if(areas, [](const FaceArea& a) { return a.visible > 0; }), 6);
     }
 }
 

@@ -99,6 +99,24 @@ TEST(Crossings, SurfacesThatTouchDoNotCross) {
     EXPECT_EQ(curves_of(corner).counts.intersections, 0u);
 }
 
+// Two valleys with one bottom line, one in the other: of the faces on either side the same surface
+// is in front, though the planes beyond the line say otherwise.
+TEST(Crossings, SurfacesThatTouchAlongEdgesOfBothDoNotCross) {
+    const auto valley = [](SceneBuilder& b, double y, double left, double right) {
+        b.quad({-10, -y, -10 * left}, {0, -y, 0}, {0, y, 0}, {-10, y, -10 * left});
+        b.quad({0, -y, 0}, {10, -y, 10 * right}, {10, y, 10 * right}, {0, y, 0});
+    };
+    SceneBuilder touch;
+    valley(touch, 10, 0, 3);
+    valley(touch, 12, 5, 1);
+    EXPECT_EQ(curves_of(touch).counts.intersections, 0u);
+
+    SceneBuilder cross;
+    valley(cross, 10, 0, 3);
+    valley(cross, 12, 5, 4);
+    expect_one_curve(curves_of(cross), at(0, -10), at(0, 10));
+}
+
 TEST(Crossings, NeighboursInAMeshDoNotCross) {
     const Scene sphere = sphere_scene(20, 30);
     for (const Cull cull : {Cull::none, Cull::automatic}) {

@@ -141,7 +141,9 @@ void expect_equal_areas(const ScreenScene& page) {
         ASSERT_EQ(a[t].projected, b[t].projected) << "triangle " << t;
         ASSERT_NEAR(a[t].visible, b[t].visible, 1e-9 * a[t].projected) << "triangle " << t;
         ASSERT_GE(a[t].visible, -1e-9 * a[t].projected) << "triangle " << t;
-        ASSERT_LE(a[t].visible, a[t].projected * (1 + 1e-9)) << "triangle " << t;
+        // Slivers of others can be added, each at most four steps wide along its border.
+        const double most = 4 * std::ldexp(256.0, -page.subpixel_bits());
+        ASSERT_LE(a[t].visible, a[t].projected * (1 + 1e-9) + most) << "triangle " << t;
     }
 }
 
@@ -196,8 +198,9 @@ TEST(DrawingMethods, FastEqualsPairwiseOnNastyScenes) {
         ASSERT_NO_FATAL_FAILURE(
             expect_equal_methods(page(scene, page_camera(scene, {64, 64})), TraceOptions{}, totals))
             << nasty.name;
-        // The layers of the whole checkerboard complete each other: 64 edges around them, and 4.
-        EXPECT_GE(totals.edges, 68u) << nasty.name;
+        // The layers of the whole checkerboard complete each other, and inside of a sheet there are
+        // no boundaries.
+        EXPECT_GE(totals.edges, 16u) << nasty.name;
         EXPECT_GT(totals.pieces, 3u) << nasty.name;
     }
 }

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "drawing/pages.hpp"
+#include "drawing/surfaces.hpp"
 #include "support/embree_scene.hpp"
 #include "support/models.hpp"
 
@@ -124,13 +125,14 @@ void judge_edge(const Judge& judge, const PageEdge& edge, std::span<const EdgeIn
     judge_part(at, 1, true);
 }
 
-void judge_scene(const Scene& scene, const Camera& camera, std::uint64_t seed, Score& score) {
+void judge_scene(const Scene& scene, const Camera& camera, std::uint64_t seed, Score& score,
+                 EdgeKinds kinds = kAllEdges) {
     const ScreenScene screen = page(scene, camera);
     const RayCaster caster(scene);
     const Judge judge(screen, caster);
     const Occluders occluders(screen, TraceMethod::fast, 0);
     TraceOptions options;
-    options.edges = kAllEdges;
+    options.edges = kinds;
     const CutLines lines = cut_lines(screen, occluders, options);
     Random random(seed);
     for (std::size_t i = 0; i < lines.edges.edges.size(); ++i)
@@ -177,6 +179,19 @@ TEST(DrawingRays, AgreeOnASphere) {
     Score score;
     judge_scene(scene, must(make_camera({}, scene.bounds, {400, 300})), 1, score);
     expect_good(score, "sphere");
+}
+
+// Curves of surfaces that cross are seen in full where nothing lies before them.
+TEST(DrawingRays, AgreeOnSurfacesThatCross) {
+    Score score;
+    for (std::uint64_t seed = 0; seed < amount(60, 6, 1); ++seed) {
+        for (const int kind : {0, 1, 4}) {
+            const Scene scene = in_floats(surface_pair(kind, seed).builder.build());
+            judge_scene(scene, random_view(scene, seed, {400, 300}), seed, score,
+                        {EdgeKind::intersection});
+        }
+    }
+    expect_good(score, "surfaces that cross");
 }
 
 class RaysOfModel : public ::testing::TestWithParam<const char*> {};

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "drawing/pages.hpp"
+#include "drawing/surfaces.hpp"
 #include "support/models.hpp"
 #include "support/nasty.hpp"
 
@@ -230,6 +231,61 @@ TEST(SampledRegions, AgreeWithPicturesOfHostileScenes) {
     std::cout << "hostile scenes: " << score.samples << " pixels, " << score.close_depths
               << " differ where depths are closer than snapping moves them\n";
     EXPECT_LT(score.close_depths, score.samples / 50);
+}
+
+TEST(SampledRegions, AgreeWithPicturesOfSurfacesThatCross) {
+    PictureScore score;
+    for (std::uint64_t seed = 0; seed < amount(100, 6, 1); ++seed)
+        for (const int kind : {0, 1, 4}) {
+            const Scene scene = surface_pair(kind, seed).builder.build();
+            compare_to_picture(scene, random_view(scene, seed, {80, 60}), score);
+            ASSERT_EQ(score.wrong, 0u)
+                << "kind " << kind << " seed " << seed << ", " << score.first;
+        }
+    std::cout << "surfaces that cross: " << score.samples << " pixels, " << score.close_depths
+              << " differ where depths are closer than snapping moves them\n";
+    EXPECT_GT(score.covered, score.samples / 20);
+    EXPECT_LT(score.close_depths, score.samples / 1000);
+}
+
+/// Beside a visible curve, 1/256 pixel away, each of its two faces is seen on one side.
+TEST(SampledRegions, BorderOnEachOtherAlongCurves) {
+    std::uint64_t curves = 0, others = 0, wrong = 0;
+    for (std::uint64_t seed = 0; seed < amount(200, 20, 3); ++seed) {
+        const Scene scene = surface_pair(static_cast<int>(seed % 5), seed).builder.build();
+        const ScreenScene screen = page(scene, random_view(scene, seed, {400, 300}));
+        const CanonicalAnswer canonical(screen);
+        const Drawing drawing = must(trace(screen, [] {
+            TraceOptions options;
+            options.edges = {EdgeKind::intersection};
+            return options;
+        }()));
+        const double unit = std::ldexp(1.0, screen.subpixel_bits());
+        for (std::size_t i = 0; i < drawing.lines.size(); ++i) {
+            const glm::dvec2 p = drawing.lines.from[i], q = drawing.lines.to[i], way = q - p;
+            const double length = std::sqrt(way.x * way.x + way.y * way.y);
+            if (length < 0.125) continue;
+            const glm::dvec2 beside = glm::dvec2(-way.y, way.x) / (256 * length);
+            std::uint32_t seen[2] = {};
+            for (const int side : {0, 1}) {
+                const glm::dvec2 s = unit * (0.5 * (p + q) + (side == 0 ? -1.0 : 1.0) * beside);
+                seen[side] = canonical.polygon_at(static_cast<std::int32_t>(s.x),
+                                                  static_cast<std::int32_t>(s.y));
+            }
+            const glm::uvec2 own = drawing.lines.polygons[i];
+            const auto is_own = [&](std::uint32_t id) { return id == own.x || id == own.y; };
+            ++curves;
+            // Near the end of a face another one is seen, or where the faces are slivers.
+            if (!is_own(seen[0]) || !is_own(seen[1]))
+                ++others;
+            else if (seen[0] == seen[1])
+                ++wrong;
+        }
+    }
+    std::cout << curves << " pieces of curves, beside " << others << " other faces are seen\n";
+    EXPECT_GT(curves, 500u);
+    EXPECT_LT(others, curves / 50);
+    EXPECT_EQ(wrong, 0u);
 }
 
 class RegionsOfModel : public ::testing::TestWithParam<const char*> {

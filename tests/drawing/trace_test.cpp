@@ -247,8 +247,9 @@ TEST(Trace, ProgressRisesToOneAndIsToldFromOneThreadAtATime) {
 TEST(Trace, WithoutFacesTheDrawingIsEmpty) {
     SceneBuilder degenerate, outside, behind;
     degenerate.triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2});
-    outside.triangle({1000, 0, 0}, {1001, 0, 0}, {1000, 1, 0});
-    behind.triangle({0, 0, 500}, {1, 0, 500}, {0, 1, 500});
+    // So large that they need no offset: the camera is made without the scene.
+    outside.triangle({1000, 0, 0}, {1100, 0, 0}, {1000, 100, 0});
+    behind.triangle({0, 0, 500}, {100, 0, 500}, {0, 100, 500});
     for (const SceneBuilder* b : {&degenerate, &outside, &behind})
         for (const TraceMethod method : {TraceMethod::fast, TraceMethod::pairwise}) {
             const Scene scene = b->build();

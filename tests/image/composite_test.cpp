@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -57,6 +58,133 @@ TEST(CompositeFlat, LayersThatNotAllHaveAreDropped) {
     EXPECT_FALSE(std::get<FlatPicture>(*joined).objects);
     const auto turned = composite({without, row_of({2, 2}, 1)});
     EXPECT_FALSE(std::get<FlatPicture>(*turned).objects);
+}
+
+TEST(CompositeFlat, NothingNeverWins) {
+    // Other programs write 0, or what they like, where nothing is seen: alpha 0 tells.
+    FlatPicture zeros = row_of({0, 0, 2, 0}, 1);
+    zeros.color.pixels = {glm::vec4(0), glm::vec4(0), glm::vec4(1), {0, 0, 0, 0}};
+    const FlatPicture other = row_of({5, kInf, 5, 7}, 2);
+    std::vector<std::uint64_t> taken;
+    for (const bool turned : {false, true}) {
+        CompositeOptions options;
+        options.taken = &taken;
+        const auto joined = composite(
+            turned ? std::vector<ExrPicture>{other, zeros} : std::vector<ExrPicture>{zeros, other},
+            options);
+        ASSERT_TRUE(joined.ok());
+        const auto& flat = std::get<FlatPicture>(*joined);
+        EXPECT_EQ(flat.depth.pixels, (std::vector<float>{5, kInf, 2, 7}));
+        EXPECT_EQ(flat.objects->pixels[0], 2u);
+        EXPECT_EQ(flat.objects->pixels[1], turned ? 2u : 1u) << "that of the first stays";
+        EXPECT_EQ(flat.objects->pixels[2], 1u);
+        EXPECT_EQ(taken[turned ? 1 : 0], 1u);
+        EXPECT_EQ(taken[turned ? 0 : 1], 2u);
+    }
+}
+
+// -- data windows ------------------------------------------------------------------------------
+
+const Placement::Frame kWhole{{-2, -1}, {9, 6}};
+
+/// A picture of some pixels of the whole; what they are depends on where they stand.
+FlatPicture part_of_whole(glm::ivec2 first, glm::ivec2 last, float depth, float shade) {
+    const glm::uvec2 size(last - first + 1);
+    FlatPicture picture;
+    picture.color = ColorImage(size.x, size.y);
+    picture.depth = DepthImage(size.x, size.y);
+    picture.objects = IdImage(size.x, size.y);
+    picture.placement = {first, kWhole};
+    for (std::uint32_t y = 0; y < size.y; ++y) {
+        for (std::uint32_t x = 0; x < size.x; ++x) {
+            const glm::ivec2 at = first + glm::ivec2(x, y);
+            const bool seen = (at.x + at.y) % 3 != 0;
+            picture.color.at(x, y) = glm::vec4(shade, at.x, at.y, 1);
+            picture.depth.at(x, y) = seen ? depth + static_cast<float>(at.x % 2) : kInf;
+            picture.objects->at(x, y) = static_cast<std::uint32_t>(shade);
+        }
+    }
+    return picture;
+}
+
+TEST(CompositeFlat, TheResultHasTheUnionOfTheDataWindows) {
+    const std::vector<ExrPicture> parts = {part_of_whole({0, 0}, {3, 4}, 2, 1),
+                                           part_of_whole({2, 3}, {6, 5}, 2.5f, 2),
+                                           part_of_whole({-1, 2}, {2, 2}, 1.5f, 3)};
+    const auto joined = composite(parts);
+    ASSERT_TRUE(joined.ok()) << joined.error().message;
+    const auto& flat = std::get<FlatPicture>(*joined);
+    EXPECT_EQ(flat.placement.origin, glm::ivec2(-1, 0));
+    ASSERT_EQ(glm::uvec2(flat.color.width, flat.color.height), glm::uvec2(8, 6));
+    EXPECT_EQ(flat.placement.frame->last, kWhole.last);
+    for (std::uint32_t y = 0; y < 6; ++y) {
+        for (std::uint32_t x = 0; x < 8; ++x) {
+            // By hand: the nearest that sees something, else the first that has the pixel.
+            glm::vec4 color(0);
+            float depth = kInf;
+            bool there = false;
+            for (const ExrPicture& part : parts) {
+                const auto& p = std::get<FlatPicture>(part);
+                const glm::ivec2 at = glm::ivec2(x, y) + flat.placement.origin - p.placement.origin;
+                if (at.x < 0 || at.y < 0 || at.x >= static_cast<int>(p.color.width) ||
+                    at.y >= static_cast<int>(p.color.height))
+                    continue;
+                const float z =
+                    p.depth.at(static_cast<unsigned>(at.x), static_cast<unsigned>(at.y));
+                if (there && !(z < depth)) continue;
+                color = p.color.at(static_cast<unsigned>(at.x), static_cast<unsigned>(at.y));
+                depth = z;
+                there = true;
+            }
+            EXPECT_EQ(flat.color.at(x, y), color) << x << ' ' << y;
+            EXPECT_EQ(flat.depth.at(x, y), depth);
+            EXPECT_EQ(flat.objects->at(x, y), there ? static_cast<std::uint32_t>(color.r) : ~0u);
+        }
+    }
+}
+
+TEST(CompositeDeep, TheResultHasTheUnionOfTheDataWindows) {
+    const auto part = [](glm::ivec2 origin, std::uint32_t width, std::uint32_t height, float z) {
+        DeepImage image{width, height, {0}, {}, {origin, kWhole}};
+        for (std::uint32_t i = 0; i < width * height; ++i) {
+            for (std::uint32_t k = 0; k < i % 3; ++k) {
+                const float at = z + static_cast<float>(k);
+                image.samples.push_back({at, at, {0, 0, 0, 0.5f}, i, k});
+            }
+            image.first.push_back(image.samples.size());
+        }
+        return image;
+    };
+    const std::vector<DeepImage> parts = {part({1, 1}, 3, 2, 1), part({0, 2}, 2, 3, 1.25f),
+                                          part({4, 4}, 1, 2, 7)};
+    const auto joined = composite({parts[0], parts[1], parts[2]});
+    ASSERT_TRUE(joined.ok()) << joined.error().message;
+    const auto& deep = std::get<DeepImage>(*joined);
+    EXPECT_EQ(deep.placement.origin, glm::ivec2(0, 1));
+    ASSERT_EQ(glm::uvec2(deep.width, deep.height), glm::uvec2(5, 5));
+    for (std::uint32_t i = 0; i < 25; ++i) {
+        std::vector<DeepSample> expected;
+        for (const DeepImage& p : parts) {
+            const glm::ivec2 at =
+                glm::ivec2(i % 5, i / 5) + deep.placement.origin - p.placement.origin;
+            if (at.x < 0 || at.y < 0 || at.x >= static_cast<int>(p.width) ||
+                at.y >= static_cast<int>(p.height))
+                continue;
+            const auto samples =
+                p.pixel(static_cast<std::size_t>(at.y) * p.width + static_cast<std::size_t>(at.x));
+            expected.insert(expected.end(), samples.begin(), samples.end());
+        }
+        std::ranges::stable_sort(expected, {}, &DeepSample::z);
+        const auto samples = deep.pixel(i);
+        EXPECT_EQ(std::vector(samples.begin(), samples.end()), expected) << i;
+    }
+}
+
+TEST(CompositeFlat, WindowsThatSpanTooMuchAreRefused) {
+    const auto joined = composite(
+        {part_of_whole({0, 0}, {1, 1}, 1, 1), part_of_whole({70'000, 0}, {70'001, 1}, 1, 1)});
+    ASSERT_FALSE(joined.ok());
+    EXPECT_NE(joined.error().message.find("70002x2"), std::string::npos) << joined.error().message;
 }
 
 TEST(CompositeFlat, MisfitsNameBothFiles) {

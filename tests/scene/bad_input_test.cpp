@@ -90,10 +90,12 @@ TEST(BadInput, NoTriangles) {
 TEST(BadInput, Coordinates) {
     EXPECT_NE(message_of(load_text(kPoints + "v nan 0 0\nf 1 2 4\n", "obj")).find("not a number"),
               std::string::npos);
-    EXPECT_NE(message_of(load_text(kPoints + "v 1e39 0 0\nf 1 2 4\n", "obj")).find("infinite"),
+    EXPECT_NE(message_of(load_text(kPoints + "v 1e999 0 0\nf 1 2 4\n", "obj")).find("infinite"),
               std::string::npos);
-    EXPECT_NE(message_of(load_text(kPoints + "v 1e31 0 0\nf 1 2 4\n", "obj")).find("beyond 1e30"),
-              std::string::npos);
+    for (const std::string large : {"1e31", "1e39"})  // below and beyond the largest float
+        EXPECT_NE(message_of(load_text(kPoints + "v " + large + " 0 0\nf 1 2 4\n", "obj"))
+                      .find("beyond 1e30"),
+                  std::string::npos);
 }
 
 TEST(BadInput, IndicesOutOfRange) {

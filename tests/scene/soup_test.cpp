@@ -13,6 +13,7 @@ namespace {
 Soup sample() {
     Soup soup;
     soup.ignored_primitives = 3;
+    soup.notes = {"a note", ""};
     Material material;
     material.name = "red";
     material.base_color = {1, 0, 0};

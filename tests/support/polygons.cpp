@@ -176,7 +176,8 @@ std::vector<Loop> random_region(Random& random, int parts) {
         }
     }
     // Outlines before holes.
-    std::ranges::stable_partition(region, [](const Loop& l) { return doubled_area(l) > 0; });
+    std::stable_partition(region.begin(), region.end(),
+                          [](const Loop& l) { return doubled_area(l) > 0; });
     return region;
 }
 
@@ -338,7 +339,7 @@ DecoratedPolygon random_polygon(std::uint64_t seed, const Ornament& ornament) {
         for (auto n = random.below(ornament.spikes + 1); n-- > 0;) add_spike(random, outline);
         for (auto n = random.below(4); n-- > 0;) split_side(random, outline);
         for (auto n = random.below(3); n-- > 0;) repeat_corner(random, outline);
-        std::ranges::rotate(outline, outline.begin() + random.below(4) % 4);
+        std::rotate(outline.begin(), outline.begin() + random.below(4) % 4, outline.end());
         if (outline.size() < 4) continue;
         // Out of the grid's directions.
         const Point x{1 + random.below(7), random.below(11) - 5};

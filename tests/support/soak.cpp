@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "math/predicates.hpp"
 #include "sightline/bsp.hpp"
 #include "support/bsp_differences.hpp"
 #include "support/models.hpp"
@@ -101,10 +102,15 @@ std::string first_difference(const Visibility& truth, const Visibility& seen, bo
     return {};
 }
 
-std::uint64_t differing_ids(const Visibility& a, const Visibility& b) {
-    std::uint64_t differ = 0;
-    for (std::size_t i = 0; i < a.ids.size(); ++i) differ += a.ids[i] != b.ids[i];
-    return differ;
+// Of layers that are exactly equally deep at a sample either may come first.
+bool are_tied(const ScreenScene& screen, const Visibility& a, const Visibility& b, std::size_t at) {
+    if (a.ids[at] == kNone || b.ids[at] == kNone) return false;
+    const std::int32_t step = a.grid.step(screen.subpixel_bits());
+    const std::int32_t offset = a.grid.offset(screen.subpixel_bits());
+    const auto column = static_cast<std::int32_t>(at % a.grid.columns());
+    const auto row = static_cast<std::int32_t>(at / a.grid.columns());
+    return compare_depth_exactly(screen.plane(a.ids[at]), screen.plane(b.ids[at]),
+                                 offset + column * step, offset + row * step) == 0;
 }
 
 }  // namespace
@@ -240,8 +246,11 @@ std::uint64_t Soak::differences(const Job& job, const ScreenScene& screen,
     if (algorithm.ends_with(kLayers)) {
         const Visibility seen =
             nearest_layers(algorithm.substr(0, algorithm.size() - kLayers.size()), screen, options);
-        first = first_difference(job.truth, seen, true);
-        return differing_ids(job.truth, seen);
+        std::uint64_t differing = 0;
+        for (std::size_t i = 0; i < seen.ids.size(); ++i)
+            differing += seen.ids[i] != job.truth.ids[i] && !are_tied(screen, job.truth, seen, i);
+        if (differing > 0) first = first_difference(job.truth, seen, true);
+        return differing;
     }
     const Visibility seen = run(algorithm, screen, options);
     const std::uint64_t differing = count_differences(job.truth, seen);

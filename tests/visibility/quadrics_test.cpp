@@ -279,7 +279,7 @@ TEST(Quadrics, AFarEyeLosesNoDigits) {
     options.eye = glm::dvec3(0, 0, 0);
     options.target = glm::dvec3(0, 0, -1e6);
     options.fov = 2 * 1.1e-6 * 180 / std::numbers::pi;  // 1.1 radii on either side
-    const Camera camera = must(make_camera(options, scene.bounds, {100, 100}));
+    const Camera camera = must(make_camera(options, scene, {100, 100}));
     const ScreenScene screen = must(project(scene, camera));
     const Visibility seen = run("zbuffer", screen);
     double covered = 0;

@@ -13,6 +13,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <memory>
+#include <set>
 #include <string_view>
 
 #include "scene/load/text.hpp"
@@ -90,6 +91,17 @@ bool is_invented(const aiMaterial& material) {
     return std::string_view(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME;
 }
 
+void collect_textures(const aiMaterial& material, std::set<std::string>& names) {
+    for (unsigned type = 1; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+        const auto kind = static_cast<aiTextureType>(type);
+        for (unsigned i = 0; i < material.GetTextureCount(kind); ++i) {
+            aiString path;
+            if (material.GetTexture(kind, i, &path) == aiReturn_SUCCESS)
+                names.emplace(path.C_Str());
+        }
+    }
+}
+
 void append_faces(const aiMesh& from, SoupMesh& mesh, std::uint64_t& ignored) {
     mesh.polygon_sizes.reserve(from.mNumFaces);
     mesh.corners.reserve(std::size_t{3} * from.mNumFaces);
@@ -157,11 +169,14 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
     Soup soup;
     soup.srgb_colors = !is_linear(format);
     std::vector<std::uint32_t> numbers(scene.mNumMaterials, kNone);
+    std::set<std::string> textures;
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
         if (is_invented(*scene.mMaterials[i])) continue;
         numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
         soup.materials.push_back(material_of(*scene.mMaterials[i]));
+        collect_textures(*scene.mMaterials[i], textures);
     }
+    if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
         const aiMesh& mesh = *scene.mMeshes[i];
         soup.meshes.push_back(mesh_of(mesh, soup.ignored_primitives));

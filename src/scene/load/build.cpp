@@ -19,6 +19,9 @@ namespace {
 /// for corners, normals and colours, half a position, its sheet, and the tables that join and pair.
 constexpr std::size_t kBytesPerTriangle = 128;
 
+/// What is noted of files stays short, however many there are.
+constexpr std::size_t kMostNotes = 100;
+
 /// Linear light of a colour from a file. Display colours have 8 bits in practice, so the table for
 /// those serves.
 float linear_channel(float value, bool srgb) {
@@ -134,6 +137,19 @@ void SceneBuilder::append_materials(const Soup& soup, const Placement& placement
     }
 }
 
+void SceneBuilder::append_notes(const Soup& soup, const Placement& placement) {
+    const auto add = [&](std::string_view note) {
+        const std::string line = fmt::format("{}: {}", placement.file, note);
+        // A model that stands in a scene many times has its notes once.
+        if (std::ranges::find(scene_.notes, line) != scene_.notes.end()) return;
+        if (scene_.notes.size() < kMostNotes) scene_.notes.push_back(line);
+    };
+    for (const std::string& note : soup.notes) add(clean_text(note));
+    if (soup.ignored_primitives > 0)
+        add(fmt::format("points, lines and faces of fewer than three corners are not drawn: {}",
+                        soup.ignored_primitives));
+}
+
 std::uint32_t SceneBuilder::material_of(const SoupMesh& mesh, const Placement& placement) {
     if (mesh.material != kNone) return first_material_ + mesh.material;
     Material material;
@@ -154,6 +170,7 @@ Status SceneBuilder::append(const Soup& soup, const Placement& placement) {
     if (Status size = check_size(soup, placement); !size) return size;
     append_materials(soup, placement);
     scene_.counts.ignored_primitives += soup.ignored_primitives;
+    append_notes(soup, placement);
     const auto drawn = std::ranges::count_if(soup.objects, [&](const SoupObject& object) {
         return !soup.meshes[object.mesh].polygon_sizes.empty();
     });

@@ -63,6 +63,7 @@ private:
 
     [[nodiscard]] Status check_size(const Soup& soup, const Placement& placement) const;
     void append_materials(const Soup& soup, const Placement& placement);
+    void append_notes(const Soup& soup, const Placement& placement);
     [[nodiscard]] std::uint32_t material_of(const SoupMesh& mesh, const Placement& placement);
     [[nodiscard]] Status append_object(const Instance& instance);
     [[nodiscard]] Status append_polygons(const Instance& instance);

@@ -28,9 +28,6 @@ namespace {
 
 /// Below this many corners a list of the reflex ones is quicker than a grid.
 constexpr std::size_t kGridFrom = 64;
-/// The outline turns back where its sides differ by less than this angle. Turning a polygon in
-/// space moves corners by 2^-53 of their coordinates; this holds for sides down to 2^-12 of those.
-constexpr double kBackAngle = 0x1p-40;
 
 std::uint32_t cell_index(double offset, double cell, std::uint32_t cells) {
     const double index = offset / cell;
@@ -184,7 +181,6 @@ bool EarCutter::is_ear(std::uint32_t corner, Strictness strictness) {
     const double area = turn(points_[c.prev], points_[corner], points_[c.next]);
     switch (strictness) {
         case Strictness::proper:
-            return area > 0 && !blocked(corner, strictness);
         case Strictness::touching:
             return area > 0 && !blocked(corner, strictness);
         case Strictness::convex:

@@ -101,6 +101,8 @@ public:
     [[nodiscard]] Status add_path(const std::string& path);
     [[nodiscard]] Status add_bytes(std::span<const std::byte> bytes, const std::string& name,
                                    const std::string& format);
+    /// What was added since the last call is a part by itself.
+    void end_part() { parts_end_.push_back(builder_.object_count()); }
     /// The finished scene; `name` is the file to blame when all of it is one point.
     [[nodiscard]] Result<Scene> finish(const std::string& name);
 
@@ -117,6 +119,7 @@ private:
     std::vector<Motion> motions_;
     std::vector<Light> lights_;
     std::optional<CameraOptions> camera_;
+    std::vector<std::uint32_t> parts_end_;  // one beyond the last object of each part
 };
 
 Placement placement_of(const std::string& name) {
@@ -215,6 +218,8 @@ bool is_moderate(const Box& reach) {
 
 Result<Scene> Loader::finish(const std::string& name) {
     Scene scene = builder_.take();
+    for (std::uint32_t part = 0, o = 0; part < parts_end_.size(); ++part)
+        for (; o < parts_end_[part]; ++o) scene.objects[o].part = part;
     for (const SurfaceEntry& surface : surfaces_) {
         Material material;
         apply(surface.material, material);
@@ -226,7 +231,8 @@ Result<Scene> Loader::finish(const std::string& name) {
     scene.motions = std::move(motions_);
     scene.lights = std::move(lights_);
     scene.camera = camera_;
-    finish_joined_scene(scene, options_.offset);
+    finish_joined_scene(scene, {options_.offset, options_.weld,
+                                options_.find_sheets ? FindSheets::yes : FindSheets::no});
     if (!is_moderate(scene.reach)) {
         return bad_input(fmt::format(
             "{}: the frames of a model take it beyond 1e30; use smaller numbers", name));
@@ -268,6 +274,7 @@ Result<Scene> load_scene(std::span<const std::string> paths, const LoadOptions& 
         load::Loader loader(options);
         for (const std::string& path : paths) {
             if (Status added = loader.add_path(path); !added) return added.error();
+            loader.end_part();
         }
         return loader.finish(paths[0]);
     });

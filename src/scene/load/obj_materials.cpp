@@ -1,5 +1,7 @@
 #include "scene/load/obj_materials.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -7,6 +9,7 @@
 
 #include "scene/load/input.hpp"
 #include "scene/load/scan.hpp"
+#include "scene/load/text.hpp"
 
 namespace sightline::load {
 namespace {
@@ -44,21 +47,45 @@ void apply_line(const char* p, Material& material) {
     }
 }
 
+/// Whether a line names a texture: map_Kd and its like, and what older programs write.
+bool names_texture(const char* p) {
+    constexpr std::array kKeywords = {"bump", "disp", "decal", "refl", "norm"};
+    const std::string_view first(p, static_cast<std::size_t>(skip_word(p) - p));
+    return first.starts_with("map_") || std::ranges::any_of(kKeywords, [&](const char* word) {
+               return starts_with_word(p, word);
+           });
+}
+
+/// The name of the file stands after its options.
+std::string_view last_word(std::string_view line) {
+    const std::size_t blank = line.find_last_of(" \t");
+    return blank == std::string_view::npos ? line : line.substr(blank + 1);
+}
+
 }  // namespace
 
 void ObjMaterials::load(std::string_view names) {
-    if (path_.empty() || names.empty() || load_file(names)) return;
+    if (names.empty() || load_file(names)) return;
     bool found = false;
+    std::set<std::string> missing;
     for (std::string_view rest = names; !rest.empty();) {
         const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-        if (end > 0 && end < names.size()) found = load_file(rest.substr(0, end)) || found;
+        if (end > 0 && end < names.size()) {
+            const bool here = load_file(rest.substr(0, end));
+            if (!here) missing.emplace(rest.substr(0, end));
+            found = found || here;
+        }
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    if (found) return;
-    (void)load_file(std::filesystem::path(path_).stem().string() + ".mtl");
+    if (found) {
+        missing_.merge(missing);
+    } else if (!load_file(std::filesystem::path(path_).stem().string() + ".mtl")) {
+        missing_.emplace(names);
+    }
 }
 
 bool ObjMaterials::load_file(std::string_view name) {
+    if (path_.empty()) return false;
     std::string portable(name);
     std::ranges::replace(portable, '\\', '/');
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
@@ -86,6 +113,7 @@ void ObjMaterials::parse(std::string_view text) {
             current = use(rest_of_line(p + 6));
         } else if (current != kNone) {
             apply_line(p, materials_[current]);
+            if (names_texture(p)) textures_.emplace(last_word(rest_of_line(skip_word(p))));
         }
         p = skip_to_line_end(p) + 1;
     }
@@ -101,6 +129,19 @@ std::uint32_t ObjMaterials::use(std::string_view name) {
     materials_.push_back(std::move(material));
     numbers_.emplace(name, number);
     return number;
+}
+
+std::vector<std::string> ObjMaterials::notes() const {
+    std::vector<std::string> notes;
+    for (const std::string& name : missing_) {
+        notes.push_back(fmt::format("the material library '{}' {}; its materials are grey",
+                                    one_line(name),
+                                    path_.empty() ? "can't be read, as the model comes without a "
+                                                    "folder"
+                                                  : "is missing"));
+    }
+    if (!textures_.empty()) notes.push_back(note_of_textures(textures_));
+    return notes;
 }
 
 std::vector<Material> ObjMaterials::take() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@ public:
     explicit ObjMaterials(std::string path) : path_(std::move(path)) {}
 
     /// Reads the files that a mtllib line names: one name with spaces, else several without, else
-    /// the OBJ file's own name with the extension mtl. Those that are missing are left out.
+    /// the OBJ file's own name with the extension mtl. Those that are missing are noted.
     void load(std::string_view names);
 
     /// Takes the definitions (newmtl, Kd, d, Tr) of an MTL file; what can't be read is skipped. A
@@ -32,6 +33,8 @@ public:
     }
     /// All of them, in order of definition or first use. An opacity of 0 has become 1.
     [[nodiscard]] std::vector<Material> take();
+    /// What had no effect: files that are missing, textures. See Soup::notes.
+    [[nodiscard]] std::vector<std::string> notes() const;
 
 private:
     bool load_file(std::string_view name);
@@ -39,6 +42,7 @@ private:
     std::string path_;
     std::vector<Material> materials_;
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
+    std::set<std::string> missing_, textures_;
 };
 
 }  // namespace sightline::load

@@ -282,6 +282,7 @@ Result<Soup> ObjReader::read() {
     join_chunks();
     make_meshes();
     soup_.materials = materials_.take();
+    soup_.notes = materials_.notes();
     if (Status in_time = context_.check(0); !in_time) return in_time.error();
     return std::move(soup_);
 }

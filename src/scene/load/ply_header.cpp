@@ -67,6 +67,9 @@ bool take_line(const std::vector<std::string_view>& words, PlyHeader& header) {
         header.elements.push_back(std::move(element));
         return true;
     }
+    // As MeshLab writes it.
+    if (n == 3 && words[0] == "comment" && words[1] == "TextureFile")
+        header.textures.emplace(words[2]);
     if (words[0] != "property") return true;  // a comment, or what somebody took for one
     if (header.elements.empty()) return false;
     const bool list = n == 5 && words[1] == "list";

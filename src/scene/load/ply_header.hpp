@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,8 @@ struct PlyHeader {
     enum class Format { ascii, binary_little_endian, binary_big_endian };
     Format format = Format::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  ///< of the header, in bytes
+    std::size_t size = 0;            ///< of the header, in bytes
+    std::set<std::string> textures;  ///< files that comments name
 };
 
 /// Errors: no PLY file, or a header that is cut off or can't be understood.

@@ -339,6 +339,7 @@ Result<Soup> PlyReader<Values>::read() {
         if (Status read = read_element(element); !read) return read.error();
     }
     if (Status fits = context_.check(memory_of(mesh_)); !fits) return fits.error();
+    if (!header_.textures.empty()) soup_.notes.push_back(note_of_textures(header_.textures));
     if (!drawn) soup_.ignored_primitives += vertices_;  // a cloud of points
     if (!mesh_.polygon_sizes.empty()) {
         soup_.meshes.push_back(std::move(mesh_));

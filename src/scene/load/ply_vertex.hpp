@@ -24,7 +24,7 @@ struct PlyVertexPlan {
     };
     std::vector<Entry> entries;  ///< one a property
     std::array<bool, kOther + 1> has{};
-    bool precise = false;  ///< x, y or z is of a type that a float can't hold
+    bool precise = false;                 ///< x, y or z is of a type that a float can't hold
     std::optional<std::uint64_t> stride;  ///< bytes of a binary vertex, when all have as many
 
     explicit PlyVertexPlan(const PlyElement& element);

@@ -156,6 +156,7 @@ SoupObject get_object(Reader& reader, std::size_t meshes) {
 }
 
 // Bytes that the smallest thing of each kind takes: bounds what a count may ask for.
+constexpr std::size_t kLeastText = 8;
 constexpr std::size_t kLeastMaterial = 8 + sizeof(glm::vec3) + 3 * sizeof(float);
 constexpr std::size_t kLeastMesh = 8 + sizeof(std::uint32_t) + 7 * 8;
 constexpr std::size_t kLeastObject = 8 + sizeof(std::uint32_t) + sizeof(glm::dmat4);
@@ -167,6 +168,8 @@ std::vector<std::byte> serialise(const Soup& soup) {
     writer.put(kMagic);
     writer.put(std::uint8_t{soup.srgb_colors});
     writer.put(soup.ignored_primitives);
+    writer.put(std::uint64_t{soup.notes.size()});
+    for (const std::string& note : soup.notes) writer.put_text(note);
     writer.put(std::uint64_t{soup.materials.size()});
     for (const Material& material : soup.materials) put(writer, material);
     writer.put(std::uint64_t{soup.meshes.size()});
@@ -182,6 +185,9 @@ std::optional<Soup> deserialise(std::span<const std::byte> bytes) {
     reader.require(reader.get<std::uint64_t>() == kMagic);
     soup.srgb_colors = reader.get<std::uint8_t>() != 0;
     soup.ignored_primitives = reader.get<std::uint64_t>();
+    for (std::size_t n = reader.get_count(kLeastText); n > 0 && reader.ok(); --n) {
+        soup.notes.push_back(reader.get_text());
+    }
     for (std::size_t n = reader.get_count(kLeastMaterial); n > 0 && reader.ok(); --n) {
         soup.materials.push_back(get_material(reader));
     }

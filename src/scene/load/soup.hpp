@@ -52,6 +52,7 @@ struct Soup {
     std::vector<SoupMesh> meshes;
     std::vector<SoupObject> objects;       ///< in the file's order, depth first
     std::uint64_t ignored_primitives = 0;  ///< points and lines
+    std::vector<std::string> notes;        ///< see Scene::notes; without the file's name
 };
 
 /// Bytes for the same program on the same machine.

@@ -1,5 +1,7 @@
 #include "scene/load/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -59,6 +61,12 @@ std::string one_line(std::string_view message) {
         message.remove_suffix(1);
     }
     return clean_text(message.substr(0, kLongestMessage));
+}
+
+std::string note_of_textures(const std::set<std::string>& names) {
+    if (names.empty()) return {};
+    return fmt::format("textures are not drawn: {} ('{}'{})", names.size(),
+                       one_line(*names.begin()), names.size() > 1 ? ", ..." : "");
 }
 
 }  // namespace sightline::load

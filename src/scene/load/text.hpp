@@ -1,6 +1,7 @@
 // Text from foreign files, made fit for messages and outputs.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -17,5 +18,8 @@ namespace sightline::load {
 
 /// The first line of a message of a foreign library, cleaned and cut to a readable length.
 [[nodiscard]] std::string one_line(std::string_view message);
+
+/// What is noted of the textures of a file, by their names; "" when there are none.
+[[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);
 
 }  // namespace sightline::load
