@@ -20,7 +20,7 @@ constexpr std::uint64_t kParts = 4;
 // A part of the samples; scripts/soak.sh makes as many as one likes.
 std::uint64_t samples_of_part() {
 #ifdef SIGHTLINE_SANITIZED
-    constexpr std::uint64_t kFull = 1'000'000, kQuick = 50'000;
+    constexpr std::uint64_t kFull = 4'000'000, kQuick = 400'000;
 #else
     constexpr std::uint64_t kFull = 100'000'000, kQuick = 10'000'000;
 #endif
@@ -35,10 +35,10 @@ TEST_P(RandomViews, EveryAlgorithmOnEveryTargetEqualsBruteForce) {
     soak.compare_samples(GetParam() * 1'000'000'000, samples_of_part());
     EXPECT_EQ(soak.sum().differing, 0u) << log.str();
     EXPECT_GE(soak.sum().samples, samples_of_part());
+#ifndef SIGHTLINE_SANITIZED
     // The views are worth something.
     const Soak::Views& views = soak.views();
     EXPECT_GT(views.covered, views.samples * 4 / 10);
-#ifndef SIGHTLINE_SANITIZED
     EXPECT_GT(views.clipped_and_tiny, views.views / 10);
     EXPECT_GE(views.of_models, views.views / 50);
     // Every algorithm had its share on every target.
