@@ -110,13 +110,15 @@ private:
     // memory.
     void draw_bins(std::span<const std::span<const TriangleItem>> bins) {
         ItemReader reader(bins);
-        Triangles next;
+        Triangles vectors[2];  // in turn: a copy would go through memory
         M next_wanted;
-        bool more = reader.next(input_.screen, next, next_wanted);
+        int next = 0;
+        bool more = reader.next(input_.screen, vectors[next], next_wanted);
         while (more) {
-            const Triangles now = next;
+            const Triangles& now = vectors[next];
             const M wanted = next_wanted;
-            more = reader.next(input_.screen, next, next_wanted);
+            next = 1 - next;
+            more = reader.next(input_.screen, vectors[next], next_wanted);
             draw_vector(now, wanted);
             write_some(writer_);
             if (waiting_.vectors == Waiting::kVectors) draw_waiting();
