@@ -146,7 +146,7 @@ HWY_INLINE VI doubled_area(const Triangles& t) {
 // Lanes of `asked` whose triangle is seen edge-on in the world: it covers nothing. One by one, but
 // only those are asked that are thin enough on the screen, and who calls this asks for triangles
 // that seem to cover something.
-HWY_NOINLINE M edge_on_among(const ScreenScene& screen, VI number, M thin) {
+inline HWY_NOINLINE M edge_on_among(const ScreenScene& screen, VI number, M thin) {
     HWY_ALIGN std::int32_t numbers[kLanes], found[kLanes] = {};
     hn::Store(number, kI, numbers);
     for (std::uint32_t rest = bits_of(thin); rest != 0; rest &= rest - 1) {
