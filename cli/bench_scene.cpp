@@ -85,8 +85,7 @@ Result<BenchScene> prepare_bench(const BenchOptions& options, Progress& progress
 
     // The camera is chosen before the model grows; near and far are fitted afterwards.
     progress.stage("preparing");
-    const CameraOptions own = relative_to(
-        merge_cameras(loaded->camera.value_or(CameraOptions{}), options.camera), loaded->offset);
+    const CameraOptions own = relative_to(merge_cameras(*loaded, options.camera), loaded->offset);
     bench.own_camera = !says_nothing(own);
     const CameraOptions chosen = camera_options(own, loaded->bounds);
     auto camera = make_camera(chosen, *loaded, options.resolution);

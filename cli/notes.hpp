@@ -1,4 +1,4 @@
-// What a user should know of a run that did its job: lines on standard error.
+// Lines on standard error that tell a user what to know of a run that did its job.
 #pragma once
 
 #include <span>
@@ -23,13 +23,13 @@ class Notes {
 public:
     Notes(bool quiet, Progress& progress) : quiet_(quiet), progress_(progress) {}
 
-    /// What comes out may not be what was wanted.
+    /// Warns that what comes out may not be what was wanted.
     void warn(std::string_view text) const { print("warning", text); }
-    /// What was done is not quite what was asked for.
+    /// Says in what the run did not do quite what was asked for.
     void note(std::string_view text) const { print("note", text); }
-    /// What files hold that has no effect.
+    /// Warns of all that the scene's files hold without effect.
     void warn_of_files(const Scene& scene) const;
-    /// The options that were given and change nothing.
+    /// Warns of the options that were given and change nothing.
     void warn_of_options(const Arguments& arguments, std::span<const IdleOption> options) const;
 
 private:

@@ -20,7 +20,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAnyNumber{-kInfinity, kInfinity};
 constexpr Range kPositive{0, kInfinity, true, true};
-/// Of --weld: beyond it shapes that can be seen would change.
+/// The largest value of --weld: with a larger one, shapes that can be seen would change.
 constexpr double kLargestWeld = 0.01;
 
 constexpr std::array kCameraRows = {

@@ -102,7 +102,8 @@ struct CommonOptions {
 /// too much (eye, target and a direction or view), what `under` said gives way.
 [[nodiscard]] CameraOptions merge_cameras(const CameraOptions& under, const CameraOptions& over);
 
-/// The same with the camera of a loaded scene's file, if it has one.
+/// Merges likewise, under `asked`, the camera of the file that a scene was loaded from, if it has
+/// one.
 [[nodiscard]] CameraOptions merge_cameras(const Scene& scene, const CameraOptions& asked);
 
 /// The camera of a loaded scene: the command line over that of a scene file. It is fitted to all

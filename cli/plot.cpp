@@ -206,7 +206,7 @@ private:
         return 0;
     }
 
-    /// Of what had no effect.
+    /// Warns of options that had no effect and of a blank plot.
     void warn() {
         const Notes notes(options_.common.quiet, progress_);
         const IdleOption own[] = {

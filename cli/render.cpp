@@ -245,7 +245,7 @@ void warn_of_options(const Notes& notes, const Arguments& arguments, const Rende
         });
     };
     using enum PictureContent;
-    const bool shades = writes(color) || (writes(normals));
+    const bool shades = writes(color, normals);
     const bool makes_normals = options.shading && is_smooth(*options.shading) && shades;
     const IdleOption own[] = {
         {"--crease-angle", !makes_normals, "normals are made for --shading gouraud and phong only"},

@@ -31,11 +31,6 @@ Result<Scene> load_part(const RenderOptions& options, std::size_t k, glm::dvec3 
     return load_scene(path, loading);
 }
 
-void include(const Box& part, Box& whole) {
-    if (part.empty()) return;
-    whole = whole.empty() ? part : Box{glm::min(whole.lo, part.lo), glm::max(whole.hi, part.hi)};
-}
-
 /// Looks at all parts.
 Status survey_parts(const RenderOptions& options, glm::dvec3 offset, Progress& progress,
                     StreamPlan& plan) {
@@ -117,13 +112,13 @@ public:
             return depths_of_parts(view, edge_on);
         };
         ViewNotes view;
-        view.add({{reach_, depths}, asked, *camera, counts_, !picture.anything_seen()});
+        view.add({{frame.reach, depths}, asked, *camera, counts_, !picture.anything_seen()});
         view.print(notes_, "the picture is blank");
-        return Streamed{rows(), plan_->frame().camera};
+        return Streamed{rows(), frame.camera};
     }
 
 private:
-    /// Of all parts, which are loaded for it.
+    /// As depths_in_view() of the whole: every part is loaded for it, one at a time.
     DepthRange depths_of_parts(const Camera& camera, EdgeOn edge_on) {
         DepthRange range;
         const auto count = static_cast<unsigned>(options_.models.paths.size());
@@ -160,7 +155,7 @@ private:
             if (Status done = project(*part, camera, projecting, screen); !done) return done;
             plan_->adopt(k, screen);
             totals_.project += watch.lap();
-            note(*part, screen.counts());
+            note(screen.counts());
             if (Status done = picture.add(screen); !done) return done;
             totals_.resolve += watch.lap();
             const std::uint64_t triangles = part->triangle_count();
@@ -171,8 +166,7 @@ private:
         return success();
     }
 
-    void note(const Scene& part, const ProjectCounts& counts) {
-        include(part.reach, reach_);
+    void note(const ProjectCounts& counts) {
         counts_.triangles += counts.triangles;
         counts_.degenerate += counts.degenerate;
         counts_.outside += counts.outside;
@@ -199,7 +193,6 @@ private:
     Progress& progress_;
     std::unique_ptr<StreamPlan> plan_;
     StreamTotals totals_;
-    Box reach_;  // of the parts that were drawn
     ProjectCounts counts_;
     std::optional<Error> failed_;  // of a part that was looked at again
 };

@@ -49,8 +49,7 @@ std::optional<std::string> waste(const Subject& subject, const CameraOptions& op
     if (!fitted || step <= kGain * step_of_depth(*fitted, end)) return std::nullopt;
     return fmt::format(
         "with near at {:g} and far at {:g}, depths at {:.4g} are told apart in steps of {:.2g} "
-        "only; "
-        "leave --near and --far out, or give --near {:.4g} --far {:.4g}",
+        "only; leave --near and --far out, or give --near {:.4g} --far {:.4g}",
         camera.near_plane, camera.far_plane, end, step, rounded(fitted->near_plane, false),
         rounded(fitted->far_plane, true));
 }

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "scene/sheets.hpp"
+#include "scene/tolerance.hpp"
 
 namespace sightline {
 namespace {
@@ -88,7 +88,7 @@ std::uint32_t largest_of(const Scene& scene, const PolygonRange& range) {
 /// Whether corners lie in the plane of other ones, up to the precision of coordinates.
 bool lies_in(const Scene& scene, const Triangle& corners, const Triangle& plane) {
     const glm::dvec3 n = unit_or(area_vector(plane), {0, 0, 0});
-    const double tolerance = SheetScale(scene.bounds, scene.rounding).tolerance;
+    const double tolerance = rounding_of(scene.bounds, scene.rounding);
     return std::ranges::all_of(corners, [&](const glm::dvec3& p) {
         return std::abs(glm::dot(n, p - plane[0])) <= tolerance;
     });

@@ -18,7 +18,6 @@
 #include "math/frame.hpp"
 #include "sightline/camera.hpp"
 #include "sightline/scene.hpp"
-#include "view/facing.hpp"
 
 namespace sightline {
 
@@ -119,8 +118,7 @@ DepthRange depths_of(const std::array<Measures, 3>& corners) {
     return range;
 }
 
-// -- quadrics
-// --------------------------------------------------------------------------------------
+// -- quadrics ---------------------------------------------------------------------------------
 
 /// A cell of a quadric's box, in the quadric's own coordinates.
 struct Cell {
@@ -211,8 +209,7 @@ private:
     std::priority_queue<Cell, std::vector<Cell>, IsFarther> cells_;
 };
 
-// -- the scene
-// -------------------------------------------------------------------------------------
+// -- the scene --------------------------------------------------------------------------------
 
 class DepthFinder {
 public:
@@ -282,7 +279,7 @@ private:
             depths_of({sides_.of_point(corners[0]), sides_.of_point(corners[1]),
                        sides_.of_point(corners[2])});
         if (range.empty() || edge_on_ == EdgeOn::counts) return range;
-        return facing(camera_, corners) == Facing::edge_on ? DepthRange{} : range;
+        return camera_.sees_edge_on(corners) ? DepthRange{} : range;
     }
 
     const Scene& scene_;

@@ -48,7 +48,7 @@ double largest_of(const glm::dvec3& p) {
 
 /// By how much a transform may move a point whose coordinates are off by 2^-24 of `largest`, along
 /// an axis: floats are rounded to that.
-double rounding_of(const glm::dmat4& m, double largest) {
+double rounding_through(const glm::dmat4& m, double largest) {
     double stretch = 0;
     for (int axis = 0; axis < 3; ++axis)
         stretch =
@@ -206,7 +206,8 @@ Status SceneBuilder::append_object(const Instance& instance) {
     fill_attributes(mesh);
     largest_float_ = 0;
     if (Status added = append_polygons(instance); !added) return added;
-    scene_.rounding = std::max(scene_.rounding, rounding_of(instance.transform, largest_float_));
+    scene_.rounding =
+        std::max(scene_.rounding, rounding_through(instance.transform, largest_float_));
     object.triangle_count = scene_.triangle_count() - object.first_triangle;
     object.has_file_normals = scene_.normals.size() > normals_before;
     if (!scene_.triangle_normals.empty()) {
