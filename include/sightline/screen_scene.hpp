@@ -6,8 +6,8 @@
 // In perspective z is linear in 1/depth, so planes of the world are planes on the screen.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <span>
@@ -182,9 +182,9 @@ private:
         const ScreenPoint &p = points_[c.x], &q = points_[c.y], &r = points_[c.z];
         const std::int64_t ux = q.x - p.x, uy = q.y - p.y, vx = r.x - p.x, vy = r.y - p.y;
         const std::int64_t doubled = ux * vy - uy * vx;
-        const auto [x0, x1] = std::minmax({p.x, q.x, r.x});
-        const auto [y0, y1] = std::minmax({p.y, q.y, r.y});
-        return (doubled < 0 ? -doubled : doubled) <= thin_area(x1 - x0, y1 - y0);
+        // Two sides are as long as the box at least.
+        return std::abs(doubled) <=
+               thin_area(std::abs(ux) + std::abs(vx), std::abs(uy) + std::abs(vy));
     }
 
     const Scene* scene_ = nullptr;

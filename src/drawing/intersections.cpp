@@ -24,8 +24,7 @@ constexpr std::size_t kGrain = 256;  // parts of the search that a task takes at
 class EdgeOnSheets {
 public:
     explicit EdgeOnSheets(const Occluders& occluders) {
-        for (std::uint32_t k = 0; k < occluders.size(); ++k)
-            if (occluders[k].sheet != kNone) add(occluders[k]);
+        for (const std::uint32_t k : occluders.in_sheets()) add(occluders[k]);
     }
     [[nodiscard]] bool has(const Occluder& o) const {
         if (o.sheet == kNone) return false;
@@ -171,31 +170,42 @@ private:
         }
     };
 
-    /// Whether a triangle lies outside of one of the two sides of another one that meet at a corner
-    /// of both, clearly so: they have nothing but that corner in common on the page, no edges on
-    /// one line either. In a mesh that is so of most triangles around a vertex.
-    static bool is_outside(const Occluder& o, std::size_t own, const Occluder& other,
-                           std::size_t theirs) {
-        const ScreenPoint& corner = o.point(own);
-        const std::size_t after = Occluder::next(own), before = Occluder::next(after);
-        const std::size_t first = Occluder::next(theirs), second = Occluder::next(first);
-        const auto beyond = [&](const ScreenPoint& from, const ScreenPoint& to) {
-            const ScreenPoint &s = other.point(first), &t = other.point(second);
-            const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-            const std::int64_t slack = -kJoinedSteps * (std::abs(dx) + std::abs(dy));
-            return side(from.x, from.y, to.x, to.y, s.x, s.y) < slack &&
-                   side(from.x, from.y, to.x, to.y, t.x, t.y) < slack;
-        };
-        return beyond(corner, o.point(after)) || beyond(o.point(before), corner);
+    /// Whether one of two triangles lies outside of one of the two sides of the other one that meet
+    /// at their common corner, clearly so: they have nothing but that corner in common on the page,
+    /// no edges on one line either. In a mesh that is so of most triangles around a vertex.
+    static bool are_apart(const Occluder& o, const Occluder& other, const Shared& shared) {
+        const Way a(o, shared.own, Occluder::next(shared.own));
+        const Way b(o, shared.own, Occluder::next(Occluder::next(shared.own)));
+        const Way s(other, shared.theirs, Occluder::next(shared.theirs));
+        const Way t(other, shared.theirs, Occluder::next(Occluder::next(shared.theirs)));
+        // The inside of a triangle is on the right of its first way and on the left of its second.
+        const std::int64_t as = a.turn_to(s), at = a.turn_to(t), bs = b.turn_to(s),
+                           bt = b.turn_to(t);
+        return (as < -a.slack && at < -a.slack) || (bs > b.slack && bt > b.slack) ||
+               (as > s.slack && bs > s.slack) || (at < -t.slack && bt < -t.slack);
     }
+    /// The way from a corner to another one.
+    struct Way {
+        std::int64_t dx, dy, slack;
 
-    void test(const Occluder& o, const Occluder& other, CrossingParts& found) const {
+        Way(const Occluder& o, std::size_t from, std::size_t to)
+            : dx(std::int64_t{o.point(to).x} - o.point(from).x),
+              dy(std::int64_t{o.point(to).y} - o.point(from).y),
+              slack(kJoinedSteps * (std::abs(dx) + std::abs(dy))) {}
+        [[nodiscard]] std::int64_t turn_to(const Way& to) const { return dx * to.dy - dy * to.dx; }
+    };
+
+    [[gnu::noinline]] void test(const Occluder& o, const Occluder& other,
+                                CrossingParts& found) const {
         if (o.sheet != kNone && o.sheet == other.sheet) return;
         const Shared shared(o, other);
         if (shared.count > 1) return;
-        if (shared.count == 1 && (is_outside(o, shared.own, other, shared.theirs) ||
-                                  is_outside(other, shared.theirs, o, shared.own)))
-            return;
+        if (shared.count == 1 && are_apart(o, other, shared)) return;
+        compare(o, other, found);
+    }
+    // Apart from test(), most calls of which come to an end quickly.
+    [[gnu::noinline]] void compare(const Occluder& o, const Occluder& other,
+                                   CrossingParts& found) const {
         const CrossingFace f(o, edge_on_), g(other, edge_on_);
         const Sides own(f, g.plane);
         if (!own.crossing() && own.zeros() != 2) return;
@@ -220,8 +230,9 @@ private:
     }
 
     /// The stretch in which the planes have one depth and that lies inside of both triangles.
-    static void add_piece(const CrossingFace& f, const Sides& own, const CrossingFace& g,
-                          const Sides& theirs, CrossingParts& found) {
+    [[gnu::noinline]] static void add_piece(const CrossingFace& f, const Sides& own,
+                                            const CrossingFace& g, const Sides& theirs,
+                                            CrossingParts& found) {
         const PageLine line = line_where_deeper(f.plane, g.plane);
         const ConvexSides f_sides = sides_of(f.o.p, f.o.q, f.o.r);
         const ConvexSides g_sides = sides_of(g.o.p, g.o.q, g.o.r);

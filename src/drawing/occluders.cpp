@@ -1,6 +1,7 @@
 #include "drawing/occluders.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
@@ -51,7 +52,10 @@ bool covers_area(const ScreenScene& page, std::uint32_t k) {
     if (!page.drawable(k)) return false;
     const Corners c = page.corners(k);
     const ScreenPoint &p = page.point(c.x), &q = page.point(c.y), &r = page.point(c.z);
-    return side(p.x, p.y, q.x, q.y, r.x, r.y) != 0 && page.plane(page.id(k)).c > 0;
+    if (side(p.x, p.y, q.x, q.y, r.x, r.y) == 0) return false;
+    // A plane through corners with an area between them is no vertical one.
+    const std::uint32_t id = page.id(k);
+    return (id == k && page.shared_plane(id) == kNone) || page.plane(id).c > 0;
 }
 
 /// Triangles that cover an area, near ones together: whatever looks for neighbours then finds the
@@ -93,15 +97,21 @@ Occluders::Occluders(const ScreenScene& page, TraceMethod method, int threads) {
     const std::vector<std::uint32_t> kept = in_arena(threads, [&] { return find_covering(page); });
     all_.resize(kept.size());
     RawVector<PageTriangle> triangles(kept.size());
+    tbb::enumerable_thread_specific<std::vector<std::uint32_t>> in_sheets;
     in_arena(threads, [&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 4096),
                           [&](const auto& range) {
+                              std::vector<std::uint32_t>& mine = in_sheets.local();
                               for (std::size_t i = range.begin(); i != range.end(); ++i) {
                                   all_[i] = make_occluder(page, kept[i]);
                                   triangles[i] = all_[i].triangle();
+                                  if (all_[i].sheet != kNone)
+                                      mine.push_back(static_cast<std::uint32_t>(i));
                               }
                           });
     });
+    for (const auto& some : in_sheets)
+        in_sheets_.insert(in_sheets_.end(), some.begin(), some.end());
     if (method == TraceMethod::fast) in_arena(threads, [&] { grid_.emplace(triangles); });
 }
 

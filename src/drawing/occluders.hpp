@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "math/page_grid.hpp"
@@ -40,6 +41,8 @@ public:
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); }
     [[nodiscard]] const Occluder& operator[](std::uint32_t k) const { return all_[k]; }
+    /// Those that have the plane of a sheet, in any order.
+    [[nodiscard]] std::span<const std::uint32_t> in_sheets() const { return in_sheets_; }
 
     /// PageGrid::walk() among the occluders; with TraceMethod::pairwise all of them are visited.
     template <class Visitor>
@@ -83,6 +86,7 @@ public:
 
 private:
     RawVector<Occluder> all_;
+    std::vector<std::uint32_t> in_sheets_;
     std::optional<PageGrid> grid_;
 };
 

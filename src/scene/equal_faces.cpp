@@ -74,16 +74,15 @@ private:
     [[nodiscard]] std::vector<Face> suspects() const {
         SeenFilter seen(mesh_.triangles.size());
         std::vector<std::uint64_t> again;
+        std::vector<Face> faces;
+        faces.reserve(mesh_.triangles.size());
         each_face([&](const Face& face) {
             if (seen.add(face.hash)) again.push_back(face.hash);
+            faces.push_back(face);
         });
-        std::vector<Face> faces;
-        if (again.empty()) return faces;
         SeenFilter repeated(again.size());
         for (const std::uint64_t hash : again) repeated.add(hash >> 20);
-        each_face([&](const Face& face) {
-            if (repeated.has(face.hash >> 20)) faces.push_back(face);
-        });
+        std::erase_if(faces, [&](const Face& face) { return !repeated.has(face.hash >> 20); });
         return faces;
     }
 

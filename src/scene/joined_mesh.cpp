@@ -28,9 +28,13 @@ PositionJoiner::PositionJoiner(AlignedVector<glm::dvec3>& points, std::size_t ex
       base_(points.size()),
       slots_(std::bit_ceil(std::max(kFirstSlots, 2 * expected)), kNone) {}
 
+std::size_t PositionJoiner::first_slot_of(const glm::dvec3& position) const {
+    return static_cast<std::size_t>(hash_of(position)) & (slots_.size() - 1);
+}
+
 std::size_t PositionJoiner::slot_of(const glm::dvec3& position) const {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = static_cast<std::size_t>(hash_of(position)) & mask;
+    std::size_t slot = first_slot_of(position);
     while (slots_[slot] != kNone && points_[slots_[slot]] != position) slot = (slot + 1) & mask;
     return slot;
 }
@@ -45,6 +49,10 @@ std::uint32_t PositionJoiner::add(glm::dvec3 position) {
     slots_[slot] = static_cast<std::uint32_t>(index);
     if (2 * (points_.size() - base_) > slots_.size()) grow();
     return static_cast<std::uint32_t>(index);
+}
+
+void PositionJoiner::expect(const glm::dvec3& position) const {
+    __builtin_prefetch(&slots_[first_slot_of(position + 0.0)]);
 }
 
 void PositionJoiner::grow() {

@@ -23,9 +23,12 @@ public:
     /// Index in `points` of this position, appended when new. Amortised O(1).
     /// Precondition: finite; fewer than 2^32 - 1 points.
     std::uint32_t add(glm::dvec3 position);
+    /// Asks the processor to have at hand what add() will need for this position soon.
+    void expect(const glm::dvec3& position) const;
 
 private:
     void grow();
+    [[nodiscard]] std::size_t first_slot_of(const glm::dvec3& position) const;
     [[nodiscard]] std::size_t slot_of(const glm::dvec3& position) const;
 
     AlignedVector<glm::dvec3>& points_;

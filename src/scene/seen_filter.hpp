@@ -33,6 +33,8 @@ public:
     [[nodiscard]] bool has(std::uint64_t hash) const {
         return (bits_[(hash & mask_) / 64] >> (hash & 63) & 1) != 0;
     }
+    /// Asks the processor to have its place at hand soon.
+    void fetch(std::uint64_t hash) const { __builtin_prefetch(&bits_[(hash & mask_) / 64]); }
 
 private:
     static constexpr std::size_t kBitsPerItem = 8;

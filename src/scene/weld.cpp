@@ -16,6 +16,7 @@
 #include "scene/weld.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
@@ -158,43 +159,72 @@ private:
     }
 
     using WideCell = glm::i64vec3;
+    struct Place {
+        WideCell cell;
+        glm::i8vec3 step;  // to which neighbours of the cell the ball of the point reaches
+        std::uint64_t hash;
+    };
+    [[nodiscard]] Place place_of(std::uint32_t v, std::uint64_t seed) const {
+        // The tolerance in cells, and a sixteenth more for the rounding of coordinates below 2^41.
+        constexpr double kReach = 1.0625 / kWideCell;
+        const glm::dvec3 at = point(v) / (kWideCell * tolerance_);
+        Place place;
+        std::uint64_t key = 0;
+        for (int k = 0; k < 3; ++k) {
+            const auto cell = static_cast<std::int64_t>(at[k]);
+            const double within = at[k] - static_cast<double>(cell);
+            place.cell[k] = cell;
+            place.step[k] = static_cast<std::int8_t>((within > 1 - kReach) - (within < kReach));
+            key ^= static_cast<std::uint64_t>(cell) << 21 * k;
+        }
+        place.hash = hash_of(key, seed);
+        return place;
+    }
+    [[nodiscard]] static std::uint64_t hash_of(std::uint64_t key, std::uint64_t seed) {
+        return mixed(key + seed * 0x9E3779B97F4A7C15u);
+    }
+    [[nodiscard]] static std::uint64_t hash_of(const WideCell& cell, std::uint64_t seed) {
+        const glm::u64vec3 c(cell);
+        return hash_of(c.x ^ c.y << 21 ^ c.z << 42, seed);
+    }
 
     /// Dismisses what has no other one near it, and leaves a few of those by chance: other ones for
-    /// another `seed`.
+    /// another `seed`. In blocks, so that the memory of the filter is fetched ahead.
     void keep_near(std::vector<std::uint32_t>& points, std::uint64_t seed) const {
+        constexpr std::size_t kBlock = 32;
         SeenFilter seen(points.size());
+        std::vector<std::uint64_t> hashes;  // of each point's cell
+        hashes.reserve(points.size());
         std::vector<std::uint64_t> cells;  // of those that may be near an earlier one, and around
-        for (const std::uint32_t v : points) {
-            const glm::dvec3 at = point(v) / (kWideCell * tolerance_);
-            const WideCell own(at);
-            const WideCell step = reached_from(own, at);
-            bool is_near = seen.add(hash_of(own, seed));
-            if (step != WideCell(0))
-                each_towards(own, step, [&](const WideCell& cell) {
-                    is_near = is_near || seen.has(hash_of(cell, seed));
-                });
-            if (!is_near) continue;
-            cells.push_back(hash_of(own, seed));
-            each_towards(own, step,
-                         [&](const WideCell& cell) { cells.push_back(hash_of(cell, seed)); });
+        std::array<Place, kBlock> places;
+        for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
+            const std::size_t n = std::min(kBlock, points.size() - begin);
+            for (std::size_t i = 0; i < n; ++i) {
+                places[i] = place_of(points[begin + i], seed);
+                hashes.push_back(places[i].hash);
+                seen.fetch(places[i].hash);
+            }
+            for (const Place& place : std::span(places).first(n)) add(place, seed, seen, cells);
         }
         SeenFilter near(cells.size());
         for (const std::uint64_t cell : cells) near.add(cell >> 20);
-        std::erase_if(points, [&](std::uint32_t v) {
-            const WideCell own(point(v) / (kWideCell * tolerance_));
-            return !near.has(hash_of(own, seed) >> 20);
-        });
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (near.has(hashes[i] >> 20)) points[kept++] = points[i];
+        points.resize(kept);
     }
-    /// To which neighbours of its cell the ball of a point reaches: one a side at most.
-    [[nodiscard]] static WideCell reached_from(const WideCell& own, const glm::dvec3& at) {
-        // The tolerance in cells, and a sixteenth more for the rounding of coordinates below 2^41.
-        constexpr double kReach = 1.0625 / kWideCell;
-        WideCell step(0);
-        for (int k = 0; k < 3; ++k) {
-            const double within = at[k] - static_cast<double>(own[k]);
-            step[k] = within < kReach ? -1 : within > 1 - kReach ? 1 : 0;
-        }
-        return step;
+    static void add(const Place& place, std::uint64_t seed, SeenFilter& seen,
+                    std::vector<std::uint64_t>& cells) {
+        bool is_near = seen.add(place.hash);
+        const WideCell step(place.step);
+        if (step != WideCell(0))
+            each_towards(place.cell, step, [&](const WideCell& cell) {
+                is_near = is_near || seen.has(hash_of(cell, seed));
+            });
+        if (!is_near) return;
+        cells.push_back(place.hash);
+        each_towards(place.cell, step,
+                     [&](const WideCell& cell) { cells.push_back(hash_of(cell, seed)); });
     }
     /// visit(cell) for the neighbours on these sides.
     template <class Visit>
@@ -203,10 +233,6 @@ private:
             const WideCell part(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
             if (const WideCell away = part * step; away != WideCell(0)) visit(own + away);
         }
-    }
-    [[nodiscard]] static std::uint64_t hash_of(const WideCell& cell, std::uint64_t seed) {
-        const glm::u64vec3 c(cell);
-        return mixed((c.x ^ c.y << 21 ^ c.z << 42) + seed * 0x9E3779B97F4A7C15u);
     }
 
     /// Sides of faces at these points.

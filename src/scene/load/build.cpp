@@ -19,6 +19,9 @@ namespace {
 /// for corners, normals and colours, half a position, its sheet, and the tables that join and pair.
 constexpr std::size_t kBytesPerTriangle = 128;
 
+/// How early the joiner of positions is told what comes, when it has more than fit into a cache.
+constexpr std::size_t kCornersAhead = 24, kMostCached = 200'000;
+
 /// What is noted of files stays short, however many there are.
 constexpr std::size_t kMostNotes = 100;
 
@@ -89,6 +92,9 @@ struct SceneBuilder::Instance {
     bool mirrored;
     bool srgb;
 
+    [[nodiscard]] glm::dvec3 placed(const glm::dvec3& stored) const {
+        return glm::dvec3(transform * glm::dvec4(stored, 1.0));
+    }
     /// Place in SoupMesh::corners of a polygon's corner k. A mirror turns fronts into backs, so
     /// there the corners run backwards; the first stays the first.
     [[nodiscard]] std::size_t corner(const Polygon& polygon, std::uint32_t k) const {
@@ -241,14 +247,29 @@ Status SceneBuilder::append_polygons(const Instance& instance) {
     reserve_more(scene_.triangle_polygon, triangles);
     reserve_more(scene_.polygon_edges, triangles);
     PositionJoiner joiner(scene_.positions, std::min(mesh.position_count(), mesh.corners.size()));
+    const bool is_large = mesh.position_count() > kMostCached;
     Polygon polygon{0, 0};
     for (const std::uint32_t size : mesh.polygon_sizes) {
         polygon.size = size;
+        if (is_large)
+            expect_vertices(instance, {polygon.first_corner + kCornersAhead, size}, joiner);
         if (Status added = append_polygon(instance, polygon, joiner); !added) return added;
         polygon.first_corner += size;
         ++polygons_;
     }
     return success();
+}
+
+/// The joiner's memory is slow, so it is told early what will come.
+void SceneBuilder::expect_vertices(const Instance& instance, const Polygon& coming,
+                                   const PositionJoiner& joiner) const {
+    const SoupMesh& mesh = instance.mesh;
+    const std::size_t end = std::min(coming.first_corner + coming.size, mesh.corners.size());
+    for (std::size_t c = coming.first_corner; c < end; ++c) {
+        const std::uint32_t v = mesh.corners[c];
+        if (v < placed_positions_.size() && placed_positions_[v] == kNone)
+            joiner.expect(instance.placed(mesh.position(v)));
+    }
 }
 
 Status SceneBuilder::append_polygon(const Instance& instance, const Polygon& polygon,
@@ -296,7 +317,7 @@ Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex
                         instance.placement.file, instance.name, vertex, mesh.position_count())};
     }
     const glm::dvec3 stored = mesh.position(vertex);
-    const glm::dvec3 position(instance.transform * glm::dvec4(stored, 1.0));
+    const glm::dvec3 position = instance.placed(stored);
     const char* fault = fault_of(stored);
     if (fault == nullptr) fault = fault_of(position);
     if (fault != nullptr) {

@@ -67,6 +67,8 @@ private:
     [[nodiscard]] std::uint32_t material_of(const SoupMesh& mesh, const Placement& placement);
     [[nodiscard]] Status append_object(const Instance& instance);
     [[nodiscard]] Status append_polygons(const Instance& instance);
+    void expect_vertices(const Instance& instance, const Polygon& coming,
+                         const PositionJoiner& joiner) const;
     [[nodiscard]] Status append_polygon(const Instance& instance, const Polygon& polygon,
                                         PositionJoiner& joiner);
     [[nodiscard]] Status place_vertex(const Instance& instance, std::uint32_t vertex,
