@@ -4,29 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "drawing/lines.hpp"
 #include "drawing/regions.hpp"
+#include "support/amount.hpp"
 #include "support/scenes.hpp"
 
 namespace sightline::testing {
-
-/// How much of something a test does: in the heavy runs, usually, and under the sanitizers, which
-/// take their time.
-inline std::uint64_t amount(std::uint64_t full, std::uint64_t usual, std::uint64_t sanitized) {
-    if (std::getenv("SIGHTLINE_FULL") != nullptr) return full;
-#ifdef SIGHTLINE_SANITIZED
-    static_cast<void>(usual);
-    return sanitized;
-#else
-    static_cast<void>(sanitized);
-    return usual;
-#endif
-}
 
 /// Feature edges, mesh edges and curves: all that can be drawn.
 inline constexpr EdgeKinds kAllEdges = {EdgeKind::silhouette, EdgeKind::boundary,

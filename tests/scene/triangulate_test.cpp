@@ -142,19 +142,6 @@ TEST(Triangulate, Spirals) {
     }
 }
 
-TEST(Triangulate, CombsOfManyTeethAreQuick) {
-    std::vector<glm::dvec2> comb{{0, -1}};
-    const int teeth = 20000;
-    comb.emplace_back(2.0 * teeth, -1);
-    for (int i = teeth; i-- > 0;) {
-        comb.emplace_back(2 * i + 1.5, 0);
-        comb.emplace_back(2 * i + 1.0, 50);
-        comb.emplace_back(2 * i + 0.5, 0);
-    }
-    const Polygon polygon = flat(comb);
-    expect_tiling(polygon, triangulate(polygon));
-}
-
 TEST(Triangulate, AHoleOnABridge) {
     // A square with a square hole, joined by a doubled bridge from (0, 0) to (1, 1).
     const Polygon polygon =

@@ -3,8 +3,8 @@
 // two corners beside it, so a queue of candidates suffices.
 //
 // How this differs: every second corner is tried first, which avoids slivers; what may block an ear
-// is looked up in a grid, or in the list of reflex corners where that is shorter. And files hold
-// polygons that touch or cross themselves:
+// is looked up in a tree of the reflex corners. And files hold polygons that touch or cross
+// themselves:
 //
 // - Where the outline turns back on itself, the triangle at the tip has no area. It is cut off at
 //   once, so spikes are eaten from their tips, and bridges as soon as what they lead to is gone: a
@@ -24,60 +24,6 @@
 #include <glm/geometric.hpp>
 
 namespace sightline::load {
-namespace {
-
-/// Below this many corners a list of the reflex ones is quicker than a grid.
-constexpr std::size_t kGridFrom = 64;
-
-std::uint32_t cell_index(double offset, double cell, std::uint32_t cells) {
-    const double index = offset / cell;
-    return index > 0 ? static_cast<std::uint32_t>(std::min(index, static_cast<double>(cells) - 1))
-                     : 0;
-}
-
-}  // namespace
-
-void CornerGrid::build(std::span<const glm::dvec2> points) {
-    glm::dvec2 lo = points[0], hi = points[0];
-    for (const glm::dvec2& p : points) {
-        lo = glm::min(lo, p);
-        hi = glm::max(hi, p);
-    }
-    // About two corners a cell, cells about square.
-    const double cells = static_cast<double>(points.size()) / 2;
-    const glm::dvec2 size = glm::max(hi - lo, glm::dvec2(1e-300));
-    const double columns = std::clamp(std::sqrt(cells * (size.x / size.y)), 1.0, cells);
-    columns_ = static_cast<std::uint32_t>(columns);
-    rows_ = static_cast<std::uint32_t>(std::clamp(cells / columns, 1.0, cells));
-    origin_ = lo;
-    cell_ = {size.x / columns_, size.y / rows_};
-    first_.assign(std::size_t{columns_} * rows_ + 1, 0);
-    const auto cell_of = [&](const glm::dvec2& p) {
-        return std::size_t{row(p.y)} * columns_ + column(p.x);
-    };
-    for (const glm::dvec2& p : points) ++first_[cell_of(p)];
-    std::uint32_t end = 0;
-    for (std::uint32_t& f : first_) f = end += f;
-    corners_.resize(points.size());
-    for (std::size_t i = points.size(); i-- > 0;) {
-        corners_[--first_[cell_of(points[i])]] = static_cast<std::uint32_t>(i);
-    }
-}
-
-std::uint32_t CornerGrid::column(double x) const {
-    return cell_index(x - origin_.x, cell_.x, columns_);
-}
-
-std::uint32_t CornerGrid::row(double y) const { return cell_index(y - origin_.y, cell_.y, rows_); }
-
-CornerGrid::Cells CornerGrid::cells_of(const glm::dvec2& lo, const glm::dvec2& hi) const {
-    return {column(lo.x), column(hi.x), row(lo.y), row(hi.y)};
-}
-
-std::span<const std::uint32_t> CornerGrid::corners_in(std::uint32_t x, std::uint32_t y) const {
-    const std::size_t cell = std::size_t{y} * columns_ + x;
-    return std::span(corners_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
-}
 
 bool EarCutter::cut(std::span<const glm::dvec2> points, double same_angle, std::uint64_t most,
                     std::vector<PolygonTriangle>& triangles) {
@@ -87,8 +33,8 @@ bool EarCutter::cut(std::span<const glm::dvec2> points, double same_angle, std::
     while (left_ > 3 && work_ <= limit_) {
         if (const auto tip = next_of(backs_)) {
             cut_off(*tip, triangles);
-        } else if (const auto corner = next_of(queue_)) {
-            if (is_ear(*corner, Strictness::proper)) cut_off(*corner, triangles);
+        } else if (const auto ear = next_ear(Strictness::proper)) {
+            cut_off(*ear, triangles);
         } else if (const auto flat = next_of(flats_)) {
             cut_off(*flat, triangles);
         } else {
@@ -105,13 +51,11 @@ void EarCutter::start(std::span<const glm::dvec2> points) {
     points_ = points;
     left_ = static_cast<std::uint32_t>(points.size());
     start_ = 0;
-    has_grid_ = points.size() >= kGridFrom;
-    if (has_grid_) grid_.build(points);
+    reflex_.build(points);
     corners_.assign(left_, {});
-    queue_.clear();
+    for (std::deque<Candidate>& queue : queues_) queue.clear();
     backs_.clear();
     flats_.clear();
-    reflex_.clear();
     for (std::uint32_t i = 0; i < left_; ++i) {
         corners_[i].prev = i == 0 ? left_ - 1 : i - 1;
         corners_[i].next = i + 1 == left_ ? 0 : i + 1;
@@ -127,12 +71,11 @@ void EarCutter::touch(std::uint32_t corner) {
     const bool back = same_way(here, before, after);
     // A corner in the middle of a straight line never blocks alone: the ends of the line do. One
     // that coincides with a neighbour, or where the outline turns back, does.
-    c.reflex = area < 0 || back;
-    if (c.reflex && !c.listed) {
-        c.listed = true;
-        reflex_.push_back(corner);
-    }
-    (back ? backs_ : area == 0 ? flats_ : queue_).push_back({corner, ++c.stamp});
+    reflex_.mark(corner, area < 0 || back);
+    ++c.stamp;
+    if (back || area == 0) (back ? backs_ : flats_).push_back({corner, c.stamp});
+    if (area > 0)
+        for (std::deque<Candidate>& queue : queues_) queue.push_back({corner, c.stamp});
 }
 
 /// Whether two points lie in one direction from a third one, or one of them coincides with it.
@@ -155,6 +98,7 @@ void EarCutter::cut_off(std::uint32_t corner, std::vector<PolygonTriangle>& tria
     Corner& c = corners_[corner];
     triangles.push_back({c.prev, corner, c.next});
     c.alive = false;
+    reflex_.mark(corner, false);
     corners_[c.prev].next = c.next;
     corners_[c.next].prev = c.prev;
     start_ = c.next;
@@ -163,69 +107,33 @@ void EarCutter::cut_off(std::uint32_t corner, std::vector<PolygonTriangle>& tria
     touch(c.next);
 }
 
-/// The first corner that is an ear under the strictest condition that any corner meets.
+/// A corner that is an ear under the strictest condition that any corner meets.
 std::uint32_t EarCutter::relaxed_ear() {
-    for (const Strictness strictness : {Strictness::touching, Strictness::convex}) {
-        std::uint32_t corner = start_;
-        for (std::uint32_t i = 0; i < left_ && work_ <= limit_; ++i) {
-            if (is_ear(corner, strictness)) return corner;
-            corner = corners_[corner].next;
-        }
-    }
+    for (const Strictness strictness : {Strictness::touching, Strictness::convex})
+        if (const auto ear = next_ear(strictness)) return *ear;
     return start_;
+}
+
+/// Each corner is asked once with the neighbours that it has: that what blocked it is gone doesn't
+/// matter where no two sides cross, for there an ear is blocked until its neighbours change.
+std::optional<std::uint32_t> EarCutter::next_ear(Strictness strictness) {
+    std::deque<Candidate>& queue = queues_[static_cast<std::size_t>(strictness)];
+    while (const auto corner = next_of(queue)) {
+        if (work_ > limit_ || is_ear(*corner, strictness)) return corner;
+    }
+    return std::nullopt;
 }
 
 bool EarCutter::is_ear(std::uint32_t corner, Strictness strictness) {
     ++work_;
+    if (strictness == Strictness::convex) return true;  // what does not turn left is in no queue
     const Corner& c = corners_[corner];
-    const double area = turn(points_[c.prev], points_[corner], points_[c.next]);
-    switch (strictness) {
-        case Strictness::proper:
-        case Strictness::touching:
-            return area > 0 && !blocked(corner, strictness);
-        case Strictness::convex:
-            return area > 0;
-    }
-    return true;
-}
-
-bool EarCutter::blocked(std::uint32_t corner, Strictness strictness) {
-    const Corner& c = corners_[corner];
-    const glm::dvec2 &a = points_[c.prev], &b = points_[corner], &d = points_[c.next];
-    const glm::dvec2 lo = glm::min(glm::min(a, b), d), hi = glm::max(glm::max(a, b), d);
-    const CornerGrid::Cells cells = has_grid_ ? grid_.cells_of(lo, hi) : CornerGrid::Cells{};
-    if (!has_grid_ || cells.count() >= reflex_.size()) return blocked_by_list(corner, strictness);
-    for (std::uint32_t y = cells.y0; y <= cells.y1; ++y) {
-        for (std::uint32_t x = cells.x0; x <= cells.x1; ++x) {
-            const auto others = grid_.corners_in(x, y);
-            work_ += 1 + others.size();
-            for (const std::uint32_t o : others) {
-                if (blocks(o, corner, strictness)) return true;
-            }
-        }
-    }
-    return false;
-}
-
-bool EarCutter::blocked_by_list(std::uint32_t corner, Strictness strictness) {
-    for (std::size_t i = 0; i < reflex_.size();) {
-        ++work_;
-        Corner& other = corners_[reflex_[i]];
-        if (!other.alive || !other.reflex) {
-            other.listed = false;
-            reflex_[i] = reflex_.back();
-            reflex_.pop_back();
-            continue;
-        }
-        if (blocks(reflex_[i], corner, strictness)) return true;
-        ++i;
-    }
-    return false;
+    return !reflex_.any_in({points_[c.prev], points_[corner], points_[c.next]}, work_,
+                           [&](std::uint32_t other) { return blocks(other, corner, strictness); });
 }
 
 bool EarCutter::blocks(std::uint32_t other, std::uint32_t corner, Strictness strictness) const {
     const Corner &o = corners_[other], &c = corners_[corner];
-    if (!o.alive || !o.reflex) return false;
     if (other == corner || other == c.prev || other == c.next) return false;
     const std::array<glm::dvec2, 3> ear{points_[c.prev], points_[corner], points_[c.next]};
     std::array<double, 3>
