@@ -58,7 +58,6 @@ public:
 
     /// Appends the sheets, without frames, to those of the scene, and their seeds.
     void run(std::vector<std::uint32_t>& seeds) {
-        find_planes();
         fill_cells();
         grow_sheets(find_candidates(), seeds);
     }
@@ -70,17 +69,22 @@ private:
         return scene_.positions[scene_.triangles[begin_ + t][k]];
     }
 
-    [[nodiscard]] bool is_usable(std::uint32_t t) const { return planes_[t].is_usable(); }
-
-    void find_planes() {
-        planes_.resize(count_);
-        parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            planes_[t] = plane_of_face(scene_, scale_, begin_ + t);
-        });
+    [[nodiscard]] FacePlane plane_of(std::uint32_t t) const {
+        return plane_of_face(scene_, scale_, begin_ + t);
     }
 
+    /// A face in the hash table, with its plane, so that most are dismissed without a look
+    /// elsewhere.
+    struct Resident {
+        std::uint64_t cell;
+        glm::dvec3 normal;
+        double offset;
+        std::uint32_t triangle;
+    };
+
     // The four coordinates of a plane, all of about the size of 1. A plane and its reverse are one.
-    [[nodiscard]] std::array<double, 4> coordinates(const FacePlane& plane, double sign) const {
+    template <class Plane>
+    [[nodiscard]] std::array<double, 4> coordinates(const Plane& plane, double sign) const {
         return {sign * plane.normal.x, sign * plane.normal.y, sign * plane.normal.z,
                 sign * plane.offset / scale_.radius};
     }
@@ -96,39 +100,34 @@ private:
         return static_cast<std::int64_t>(std::floor(coordinate / kCell[axis]));
     }
 
-    /// A face in the hash table, with its plane, so that most are dismissed without a look
-    /// elsewhere.
-    struct Resident {
-        std::uint64_t cell;
-        glm::dvec3 normal;
-        std::uint32_t triangle;
-    };
-
     // A hash table whose slots lie in one row: those of slot s are residents_[first_[s]] to
     // residents_[first_[s + 1] - 1].
+    // Planes are computed twice, which takes less time than the memory to keep them.
     void fill_cells() {
-        std::vector<std::uint64_t> cells(planes_.size());
-        parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            const FacePlane& plane = planes_[t];
-            const auto at = coordinates(plane, heading(plane.normal) < 0 ? -1.0 : 1.0);
-            std::array<std::int64_t, 4> cell{};
-            for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
-            cells[t] = pack(cell);
-        });
-        slot_bits_ = std::max(4, static_cast<int>(std::bit_width(planes_.size())));
+        slot_bits_ = std::max(4, static_cast<int>(std::bit_width(count_)));
         first_.assign((std::size_t{1} << slot_bits_) + 1, 0);
-        // In any order within a slot: nothing that is decided depends on it.
-        parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            if (is_usable(t)) ++std::atomic_ref(first_[slot_of(cells[t])]);
+        parallel_faces(count_, [&](std::uint32_t t) {
+            const FacePlane plane = plane_of(t);
+            if (plane.is_usable()) ++std::atomic_ref(first_[slot_of(home_of(plane))]);
         });
         std::uint32_t end = 0;
         for (std::uint32_t& first : first_) first = end += first;
         residents_.resize(end);
-        parallel_faces(planes_.size(), [&](std::uint32_t t) {
-            if (!is_usable(t)) return;
-            const std::uint32_t at = --std::atomic_ref(first_[slot_of(cells[t])]);
-            residents_[at] = {cells[t], planes_[t].normal, t};
+        // In any order within a slot: nothing that is decided depends on it.
+        parallel_faces(count_, [&](std::uint32_t t) {
+            const FacePlane plane = plane_of(t);
+            if (!plane.is_usable()) return;
+            const std::uint64_t cell = home_of(plane);
+            const std::uint32_t at = --std::atomic_ref(first_[slot_of(cell)]);
+            residents_[at] = {cell, plane.normal, plane.offset, t};
         });
+    }
+
+    [[nodiscard]] std::uint64_t home_of(const FacePlane& plane) const {
+        const auto at = coordinates(plane, heading(plane.normal) < 0 ? -1.0 : 1.0);
+        std::array<std::int64_t, 4> cell{};
+        for (std::size_t k = 0; k < 4; ++k) cell[k] = cell_of(at[k], k);
+        return pack(cell);
     }
 
     [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
@@ -137,21 +136,21 @@ private:
         return static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15u) >> (64 - slot_bits_));
     }
 
-    // Calls visit(triangle) for all in a cell whose normals agree with that of `t`, until it
-    // answers true; returns whether it did.
+    // Calls visit(resident) for all in a cell whose normals agree with this one, until it answers
+    // true; returns whether it did.
     template <class Visit>
-    bool any_in_cell(std::uint64_t cell, std::uint32_t t, const Visit& visit) const {
+    bool any_in_cell(std::uint64_t cell, const glm::dvec3& normal, const Visit& visit) const {
         const std::size_t slot = slot_of(cell);
         for (std::uint32_t i = first_[slot]; i < first_[slot + 1]; ++i) {
             const Resident& r = residents_[i];
-            if (r.cell == cell && are_parallel(planes_[t].normal, r.normal) && visit(r.triangle))
-                return true;
+            if (r.cell == cell && are_parallel(normal, r.normal) && visit(r)) return true;
         }
         return false;
     }
 
     template <class Visit>
-    bool any_around(const std::array<double, 4>& at, std::uint32_t t, const Visit& visit) const {
+    bool any_around(const std::array<double, 4>& at, const glm::dvec3& normal,
+                    const Visit& visit) const {
         std::array<std::array<std::int64_t, 2>, 4> sides;
         for (std::size_t k = 0; k < 4; ++k)
             sides[k] = {cell_of(at[k] - kNormalTolerance, k), cell_of(at[k] + kNormalTolerance, k)};
@@ -163,44 +162,45 @@ private:
                 repeated = repeated || (which == 1 && sides[k][0] == sides[k][1]);
                 cell[k] = sides[k][which];
             }
-            if (!repeated && any_in_cell(pack(cell), t, visit)) return true;
+            if (!repeated && any_in_cell(pack(cell), normal, visit)) return true;
         }
         return false;
     }
 
-    // Calls visit for the faces whose planes may be that of `t` and whose normals agree, itself
-    // among them.
-    template <class Visit>
-    bool any_near(std::uint32_t t, const Visit& visit) const {
-        const double h = heading(planes_[t].normal);
-        if (h >= -2 * kNormalTolerance && any_around(coordinates(planes_[t], 1), t, visit))
+    // Calls visit for the faces whose planes may be this one and whose normals agree, the face
+    // that has it among them.
+    template <class Plane, class Visit>
+    bool any_near(const Plane& plane, const Visit& visit) const {
+        const double h = heading(plane.normal);
+        if (h >= -2 * kNormalTolerance && any_around(coordinates(plane, 1), plane.normal, visit))
             return true;
-        return h <= 2 * kNormalTolerance && any_around(coordinates(planes_[t], -1), t, visit);
+        return h <= 2 * kNormalTolerance && any_around(coordinates(plane, -1), plane.normal, visit);
     }
 
     // -- clusters -----------------------------------------------------------------------------
 
-    // Whether a face whose normal agrees with that of the seed lies in its plane.
-    [[nodiscard]] bool lies_in(std::uint32_t t, std::uint32_t seed) const {
-        const FacePlane& plane = planes_[seed];
+    // Whether a face whose normal agrees with that of a seed lies in its plane.
+    template <class Plane>
+    [[nodiscard]] bool lies_in(std::uint32_t t, const Plane& seed) const {
         for (int k = 0; k < 3; ++k)
-            if (!scale_.holds(plane, corner(t, k))) return false;
+            if (!scale_.holds(seed.normal, seed.offset, corner(t, k))) return false;
         return true;
     }
 
     // Faces that have a partner at all, from the largest to the smallest.
     [[nodiscard]] std::vector<std::uint32_t> find_candidates() {
-        std::vector<std::uint8_t> has_partner(planes_.size(), 0);
+        std::vector<std::uint8_t> has_partner(count_, 0);
         // In the order of the table: neighbours there ask the same cells.
         parallel_faces(residents_.size(), [&](std::uint32_t i) {
-            const std::uint32_t t = residents_[i].triangle;
-            has_partner[t] = any_near(t, [&](std::uint32_t other) {
-                return other != t && (lies_in(other, t) || lies_in(t, other));
+            const Resident& own = residents_[i];
+            has_partner[own.triangle] = any_near(own, [&](const Resident& other) {
+                return &other != &own &&
+                       (lies_in(other.triangle, own) || lies_in(own.triangle, other));
             });
         });
         std::vector<Candidate> candidates;
         for (std::uint32_t t = 0; t < has_partner.size(); ++t)
-            if (has_partner[t] != 0) candidates.push_back({planes_[t].area2, t});
+            if (has_partner[t] != 0) candidates.push_back({plane_of(t).area2, t});
         tbb::parallel_sort(
             candidates.begin(), candidates.end(),
             [&](const Candidate& a, const Candidate& b) { return comes_before(a, b); });
@@ -235,8 +235,10 @@ private:
         for (const std::uint32_t seed : candidates) {
             if (of_triangle[seed] != kNone) continue;
             members.clear();
-            any_near(seed, [&](std::uint32_t t) {
-                if (of_triangle[t] == kNone && lies_in(t, seed)) members.push_back(t);
+            const FacePlane plane = plane_of(seed);
+            any_near(plane, [&](const Resident& r) {
+                if (of_triangle[r.triangle] == kNone && lies_in(r.triangle, plane))
+                    members.push_back(r.triangle);
                 return false;
             });
             std::sort(members.begin(), members.end());
@@ -253,7 +255,6 @@ private:
     Scene& scene_;
     const SheetScale& scale_;
     std::uint32_t begin_, count_;  // of the triangles; all others here are numbered from there
-    std::vector<FacePlane> planes_;
     int slot_bits_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Resident> residents_;
@@ -268,7 +269,11 @@ SheetScale::SheetScale(const Box& bounds, double rounding)
       tolerance(rounding_of(bounds, rounding)) {}
 
 bool SheetScale::holds(const FacePlane& plane, const glm::dvec3& point) const {
-    return !(std::abs(glm::dot(plane.normal, point - centre) - plane.offset) > tolerance);
+    return holds(plane.normal, plane.offset, point);
+}
+
+bool SheetScale::holds(const glm::dvec3& normal, double offset, const glm::dvec3& point) const {
+    return !(std::abs(glm::dot(normal, point - centre) - offset) > tolerance);
 }
 
 bool are_parallel(const glm::dvec3& n, const glm::dvec3& m) {

@@ -34,6 +34,8 @@ struct SheetScale {
 
     /// Whether a point lies in a plane.
     [[nodiscard]] bool holds(const FacePlane& plane, const glm::dvec3& point) const;
+    [[nodiscard]] bool holds(const glm::dvec3& normal, double offset,
+                             const glm::dvec3& point) const;
 };
 
 /// Whether normals agree, up to their sign.

@@ -36,6 +36,16 @@ public:
         b = root(b);
         parent_[std::max(a, b)] = std::min(a, b);
     }
+    /// Of each face the number of its set; the sets are numbered in the order of their first faces.
+    /// The sets themselves are gone then.
+    std::vector<std::uint32_t> numbers() {
+        for (std::uint32_t face = 0; face < parent_.size(); ++face) parent_[face] = root(face);
+        // A root stands before its faces, so its number is there when they ask for it.
+        std::uint32_t count = 0;
+        for (std::uint32_t face = 0; face < parent_.size(); ++face)
+            parent_[face] = parent_[face] == face ? count++ : parent_[parent_[face]];
+        return std::move(parent_);
+    }
 
 private:
     std::vector<std::uint32_t> parent_;
@@ -131,24 +141,29 @@ bool ClosednessTest::volumes_positive() {
     // that does not clearly enclose anything (two faces back to back) does not count as closed.
     struct Sum {
         double volume = 0, size = 0;
+        bool is_drawn = false;
     };
-    std::vector<Sum> sums(mesh_.triangles.size());
+    edges_ = {};
+    first_ = {};
+    std::vector<Sum> sums;
+    const std::vector<std::uint32_t> part_of = parts_.numbers();
     const glm::dvec3 origin = point(0, 0);
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
         if (is_dropped(t)) continue;
         const glm::dvec3 a = point(t, 0) - origin, b = point(t, 1) - origin,
                          c = point(t, 2) - origin;
-        Sum& sum = sums[parts_.root(t)];
+        if (part_of[t] >= sums.size()) sums.resize(part_of[t] + std::size_t{1});
+        Sum& sum = sums[part_of[t]];
         sum.volume += glm::dot(a, glm::cross(b, c));
+        sum.is_drawn = true;
         sum.size += std::sqrt(glm::dot(a, a) * glm::dot(b, b)) * std::sqrt(glm::dot(c, c));
     }
     const double relative_error =
         (static_cast<double>(mesh_.triangles.size()) + 8) * std::numeric_limits<double>::epsilon();
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-        if (is_dropped(t) || parts_.root(t) != t) continue;
-        if (!(sums[t].volume > relative_error * sums[t].size)) return false;
-    }
-    return true;
+    // What is dropped is a part by itself.
+    return std::ranges::all_of(sums, [&](const Sum& sum) {
+        return !sum.is_drawn || sum.volume > relative_error * sum.size;
+    });
 }
 
 /// Judges one object after another.

@@ -200,6 +200,12 @@ Status SceneBuilder::append(const Soup& soup, const Placement& placement) {
     return success();
 }
 
+Scene SceneBuilder::take() {
+    Scene scene = std::move(scene_);
+    *this = SceneBuilder(memory_limit_);  // what was needed to build it is not to stay beside it
+    return scene;
+}
+
 Status SceneBuilder::append_object(const Instance& instance) {
     const SoupMesh& mesh = instance.mesh;
     Object object;
@@ -246,7 +252,10 @@ Status SceneBuilder::append_polygons(const Instance& instance) {
     reserve_more(scene_.triangles, triangles);
     reserve_more(scene_.triangle_polygon, triangles);
     reserve_more(scene_.polygon_edges, triangles);
-    PositionJoiner joiner(scene_.positions, std::min(mesh.position_count(), mesh.corners.size()));
+    // Where each corner has a vertex of its own, about six of them are at one place.
+    const std::size_t own = mesh.position_count() == mesh.corners.size() ? 4 : 1;
+    PositionJoiner joiner(scene_.positions,
+                          std::min(mesh.position_count(), mesh.corners.size()) / own);
     const bool is_large = mesh.position_count() > kMostCached;
     Polygon polygon{0, 0};
     for (const std::uint32_t size : mesh.polygon_sizes) {

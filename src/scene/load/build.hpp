@@ -51,7 +51,7 @@ public:
         return static_cast<std::uint32_t>(scene_.objects.size());
     }
     /// The scene so far, not finished; the builder is empty afterwards.
-    [[nodiscard]] Scene take() { return std::move(scene_); }
+    [[nodiscard]] Scene take();
 
 private:
     struct Instance;  ///< an object while it is added
