@@ -23,6 +23,10 @@ inline void check_mesh(const load::SoupMesh& mesh) {
                             std::uint64_t{0}) == mesh.corners.size());
     for (const std::uint32_t corner : mesh.corners) require(corner < mesh.position_count());
     require(mesh.colors.empty() || mesh.colors.size() == mesh.position_count());
+    if (mesh.has_polygon_normals) {
+        require(mesh.normal_corners.empty() && mesh.normals.size() == mesh.polygon_sizes.size());
+        return;
+    }
     if (mesh.normal_corners.empty()) {
         require(mesh.normals.empty() || mesh.normals.size() == mesh.position_count());
         return;

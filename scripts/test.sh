@@ -6,7 +6,10 @@
 # release     all tests, the installed library's consumers, and the same bytes from a scalar build
 # fuzz        all tests once more, built by clang with the address and undefined-behaviour
 #             sanitizers, and each libFuzzer target for a short while, from the seeds in fuzz/corpus
-# With --full also the heavy cases (SIGHTLINE_FULL=1), the thread sanitizer and longer fuzzing.
+# tsan        with --full: all tests once more, under the thread sanitizer
+#
+# With --full the tests of the release also run their heavy cases (SIGHTLINE_FULL=1), and fuzzing
+# takes longer.
 #
 # The last line counts what ran: "N passed, N failed", also left in build/test-summary.txt.
 set -uo pipefail
@@ -14,12 +17,13 @@ cd "$(dirname "$0")/.."
 
 fuzz_seconds=15
 full=no
+heavy=()
 case ${1:-} in
     '') ;;
     --full)
         full=yes
-        fuzz_seconds=240
-        export SIGHTLINE_FULL=1
+        fuzz_seconds=120
+        heavy=(env SIGHTLINE_FULL=1)
         ;;
     *)
         echo "usage: scripts/test.sh [--full]" >&2
@@ -73,11 +77,13 @@ count_results() {
         END { print passed + 0, failed + 0 }' "$1"
 }
 
+# run_ctest PRESET [env NAME=VALUE...]
 run_ctest() {
-    local build=build/$1 status=0 ok bad
+    local build=build/$1 status=0 ok bad begin=$SECONDS
     echo "Running the tests of $build"
-    ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --no-tests=error || status=1
+    "${@:2}" ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --no-tests=error || status=1
     read -r ok bad < <(count_results "$build/Testing/Temporary/LastTest.log")
+    echo "    done in $((SECONDS - begin)) s"
     # A run that failed without a failing case (a missing program, say) is a failure all the same.
     [ "$status" -eq 0 ] || [ "$bad" -gt 0 ] || bad=1
     passed=$((passed + ok))
@@ -110,7 +116,7 @@ step "Building the scalar program" build-scalar \
     configure_and_build scalar sightline-program -D SIGHTLINE_TESTS=OFF
 step "Building the program and the tests" build-release configure_and_build release all \
     -D SIGHTLINE_TESTS=ON -D SIGHTLINE_SCALAR_PROGRAM="$PWD/build/scalar/bin/sightline" &&
-    run_ctest release
+    run_ctest release "${heavy[@]}"
 # The sanitized tests and the fuzz targets share one build of the library, which saves minutes.
 if step "Building the tests and the fuzz targets with sanitizers" build-fuzz \
     configure_and_build fuzz all -D SIGHTLINE_TESTS=ON; then

@@ -257,13 +257,14 @@ Status SceneBuilder::append_polygons(const Instance& instance) {
     PositionJoiner joiner(scene_.positions,
                           std::min(mesh.position_count(), mesh.corners.size()) / own);
     const bool is_large = mesh.position_count() > kMostCached;
-    Polygon polygon{0, 0};
+    Polygon polygon{0, 0, 0};
     for (const std::uint32_t size : mesh.polygon_sizes) {
         polygon.size = size;
         if (is_large)
-            expect_vertices(instance, {polygon.first_corner + kCornersAhead, size}, joiner);
+            expect_vertices(instance, {polygon.first_corner + kCornersAhead, size, 0}, joiner);
         if (Status added = append_polygon(instance, polygon, joiner); !added) return added;
         polygon.first_corner += size;
+        ++polygon.number;
         ++polygons_;
     }
     return success();
@@ -375,9 +376,9 @@ void SceneBuilder::append_triangle(const Instance& instance, const Polygon& poly
     if (!mesh.normals.empty()) {
         const auto& of_corner = mesh.normal_corners.empty() ? mesh.corners : mesh.normal_corners;
         Corners normals{};
-        for (int k = 0; k < 3; ++k) {
-            normals[k] = place_normal(instance, of_corner[corner[static_cast<std::size_t>(k)]]);
-        }
+        for (std::size_t k = 0; k < 3; ++k)
+            normals[static_cast<int>(k)] = place_normal(
+                instance, mesh.has_polygon_normals ? polygon.number : of_corner[corner[k]]);
         // A triangle has normals at all its corners or at none.
         if (normals.x == kNone || normals.y == kNone || normals.z == kNone)
             normals = Corners{kNone};

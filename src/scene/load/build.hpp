@@ -58,7 +58,7 @@ private:
     /// A polygon of the mesh at hand: some of SoupMesh::corners.
     struct Polygon {
         std::size_t first_corner;
-        std::uint32_t size;
+        std::uint32_t size, number;
     };
 
     [[nodiscard]] Status check_size(const Soup& soup, const Placement& placement) const;

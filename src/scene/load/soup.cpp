@@ -110,6 +110,7 @@ void put(Writer& writer, const SoupMesh& mesh) {
     writer.put_all(mesh.polygon_sizes);
     writer.put_all(mesh.corners);
     writer.put_all(mesh.normal_corners);
+    writer.put(std::uint32_t{mesh.has_polygon_normals});
 }
 
 SoupMesh get_mesh(Reader& reader, std::size_t materials) {
@@ -123,10 +124,13 @@ SoupMesh get_mesh(Reader& reader, std::size_t materials) {
     mesh.polygon_sizes = reader.get_all<std::uint32_t>();
     mesh.corners = reader.get_all<std::uint32_t>();
     mesh.normal_corners = reader.get_all<std::uint32_t>();
+    mesh.has_polygon_normals = reader.get<std::uint32_t>() != 0;
     reader.require(mesh.material == kNone || mesh.material < materials);
     reader.require(mesh.positions.empty() || mesh.precise_positions.empty());
     const std::size_t normals = mesh.normals.size();
-    if (mesh.normal_corners.empty()) {
+    if (mesh.has_polygon_normals) {
+        reader.require(mesh.normal_corners.empty() && normals == mesh.polygon_sizes.size());
+    } else if (mesh.normal_corners.empty()) {
         reader.require(normals == 0 || normals == mesh.position_count());
     } else {
         reader.require(mesh.normal_corners.size() == mesh.corners.size());

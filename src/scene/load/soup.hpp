@@ -25,11 +25,13 @@ struct SoupMesh {
     // Positions as precise as the file has them: all in one of these, the other is empty.
     std::vector<glm::vec3> positions;           ///< of files that hold floats
     std::vector<glm::dvec3> precise_positions;  ///< of texts, and of files that hold doubles
-    std::vector<glm::vec3> normals;             ///< one a position unless normal_corners says which
+    /// One a polygon if has_polygon_normals, else one a position unless normal_corners says which.
+    std::vector<glm::vec3> normals;
     std::vector<glm::vec4> colors;              ///< one a position, or empty
     std::vector<std::uint32_t> polygon_sizes;   ///< number of corners of each polygon, >= 3
     std::vector<std::uint32_t> corners;         ///< the polygons' vertices, one after another
     std::vector<std::uint32_t> normal_corners;  ///< normal of each corner (kNone: none), or empty
+    bool has_polygon_normals = false;           ///< then normal_corners is empty
 
     [[nodiscard]] std::size_t position_count() const {
         return positions.size() + precise_positions.size();
