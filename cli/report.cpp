@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "errors.hpp"
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -140,7 +141,7 @@ Status print(std::string_view text) {
 }
 
 Status print_rows(const std::vector<Row>& rows, bool as_table, bool as_json) {
-    if (as_table) fmt::print(stderr, "{}", to_table(rows));
+    if (as_table) tell(to_table(rows));
     return as_json ? print(to_json(to_object(rows)) + "\n") : success();
 }
 

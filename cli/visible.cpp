@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "streams.hpp"
 #include "trace_options.hpp"
 #include "view_notes.hpp"
 
@@ -345,10 +346,9 @@ Result<int> run(const Arguments& arguments) {
     if (!text) return text.error();
     progress.clear();
     if (options->common.stats) {
-        fmt::print(stderr, "{}",
-                   to_table({{"", "load", milliseconds(load_ms), "ms"},
-                             {"", "find what is visible", milliseconds(watch.ms()), "ms"},
-                             {"", "peak memory", peak_memory_mib(), "MiB"}}));
+        tell(to_table({{"", "load", milliseconds(load_ms), "ms"},
+                       {"", "find what is visible", milliseconds(watch.ms()), "ms"},
+                       {"", "peak memory", peak_memory_mib(), "MiB"}}));
     }
     if (Status done = print(*text); !done) return done.error();
     return 0;
