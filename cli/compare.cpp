@@ -48,7 +48,10 @@ Result<CompareOptions> read_options(const Arguments& arguments) {
     options.cull = read_cull(reader, Cull::automatic);
     options.named = reader.algorithms("--algorithms");
     options.difference = read_output<ImageFormat>(reader, "--difference", kDifferenceFormats);
-    if (options.difference) check_outputs(reader, {&*options.difference, 1}, options.models.paths);
+    if (options.difference) {
+        check_outputs(reader, {&*options.difference, 1}, options.models.paths);
+        options.models.options.outputs = {options.difference->path};
+    }
     if (options.difference && options.difference->path == "-") {
         reader.fail(wrong_use("--difference: standard output holds the table; name a file"));
     }
