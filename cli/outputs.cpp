@@ -77,6 +77,10 @@ std::optional<Error> check_place(const OutputPlace& output) {
     if (fs::is_directory(path, ignored)) {
         return failure("{}: '{}' is a folder; name a file in it", output.option, output.path);
     }
+    if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+        return failure("{}: '{}' in '{}' is a file and no folder; write elsewhere", output.option,
+                       folder.string(), output.path);
+    }
     if (!fs::is_directory(folder, ignored)) {
         return failure("{}: the folder '{}' of '{}' does not exist; create it first", output.option,
                        folder.string(), output.path);

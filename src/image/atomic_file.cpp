@@ -28,8 +28,9 @@ std::string folder_of(const std::string& path) {
 
 std::string way_out(int error_number, const std::string& path) {
     switch (error_number) {
-        case ENOENT:
         case ENOTDIR:
+            return fmt::format("'{}' is no folder", folder_of(path));
+        case ENOENT:
             return fmt::format("create the folder '{}' first", folder_of(path));
         case EACCES:
         case EPERM:
