@@ -5,6 +5,7 @@
 #include "options.hpp"
 #include "report.hpp"
 #include "sightline/visibility.hpp"
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -57,7 +58,7 @@ Result<int> run(const Arguments& arguments) {
     const CommonOptions common = read_common(reader);
     if (reader.error()) return *reader.error();
     if (common.stats) {
-        fmt::print(stderr, "{}", to_table({{"", "algorithms", algorithms().size(), ""}}));
+        tell(to_table({{"", "algorithms", algorithms().size(), ""}}));
     }
     if (Status done = print(common.json ? as_json() : as_table()); !done) return done.error();
     return 0;

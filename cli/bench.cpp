@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include "bench_peers.hpp"
 #include "bench_scene.hpp"
@@ -17,6 +19,7 @@
 #include "report.hpp"
 #include "sightline/generate.hpp"
 #include "sightline/sightline.hpp"
+#include "streams.hpp"
 #include "view_notes.hpp"
 
 namespace sightline::cli {
@@ -99,7 +102,15 @@ Result<OtherTimes> time_picture(const BenchOptions& options, const ScreenScene& 
     const ColorImage picture =
         shade(screen, visibility, {Shading::flat, glm::vec4(1), options.common.threads});
     times.shade_ms = watch.lap();
-    const TemporaryFile file(std::filesystem::temp_directory_path(), "bench.png");
+    std::error_code missing;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(missing);
+    if (missing) {
+        return failure(
+            "TMPDIR: the folder '{}' for temporary files can't be used: {}; set it to a "
+            "folder that exists",
+            std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp", missing.message());
+    }
+    const TemporaryFile file(folder.string());
     if (Status done = write_color_png(file.path(), picture); !done) return done.error();
     times.write_ms = watch.lap();
     return times;
@@ -172,7 +183,7 @@ Result<int> run_stages(const Arguments& arguments, const BenchOptions& options) 
               screen.counts(), !sees_anything(visibility)});
     view.print(notes, "the picture is blank");
     const auto rows = report_rows(options, *bench, screen, *times, *others);
-    if (options.common.stats) fmt::print(stderr, "{}", to_table(rows));
+    if (options.common.stats) tell(to_table(rows));
     Status done = print(options.common.json ? to_json(to_object(rows)) + "\n" : to_table(rows));
     if (!done) return done.error();
     return 0;

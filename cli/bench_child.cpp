@@ -44,7 +44,7 @@ bool open_pipe(Pipe& pipe) {
 /// The program's process group gets every signal, so that what it starts ends with it.
 [[noreturn]] void become(char* const* argv, pid_t parent, int out, int err) {
     setpgid(0, 0);
-    std::signal(SIGPIPE, SIG_DFL);  // ignored signals stay ignored across an exec
+    std::signal(SIGXFSZ, SIG_DFL);  // ignored signals stay ignored across an exec
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(kNotStarted);  // it died before the line above
     const int null = open("/dev/null", O_RDONLY | O_CLOEXEC);

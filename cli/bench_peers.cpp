@@ -16,6 +16,7 @@
 #include "bench_child.hpp"
 #include "errors.hpp"
 #include "report.hpp"
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -358,7 +359,7 @@ Result<int> run_peers(const PeersOptions& options, const BenchOptions& bench) {
     const auto all = run_rounds(options, bench, *scene, *programs, progress);
     if (!all) return all.error();
     progress.clear();
-    if (bench.common.stats) fmt::print(stderr, "{}", as_text(options, bench, *scene, *all));
+    if (bench.common.stats) tell(as_text(options, bench, *scene, *all));
     const auto text = bench.common.json ? as_json : as_text;
     if (Status done = print(text(options, bench, *scene, *all)); !done) return done.error();
     return 0;

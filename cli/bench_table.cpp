@@ -15,6 +15,7 @@
 #include "image/atomic_file.hpp"
 #include "report.hpp"
 #include "sightline/generate.hpp"
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -274,7 +275,7 @@ Result<int> run_table(const TableOptions& options) {
     if (options.svg) {
         if (Status done = write_svg(*options.svg, *table); !done) return done.error();
     }
-    if (options.common.stats) fmt::print(stderr, "{}", as_text(*table));
+    if (options.common.stats) tell(as_text(*table));
     Status done = print(options.common.json ? as_json(options, *table) : as_text(*table));
     if (!done) return done.error();
     return 0;

@@ -10,6 +10,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "streams.hpp"
 #include "tessellate.hpp"
 #include "view_notes.hpp"
 
@@ -47,7 +48,10 @@ Result<CompareOptions> read_options(const Arguments& arguments) {
     options.cull = read_cull(reader, Cull::automatic);
     options.named = reader.algorithms("--algorithms");
     options.difference = read_output<ImageFormat>(reader, "--difference", kDifferenceFormats);
-    if (options.difference) check_outputs(reader, {&*options.difference, 1}, options.models.paths);
+    if (options.difference) {
+        check_outputs(reader, {&*options.difference, 1}, options.models.paths);
+        options.models.options.outputs = {options.difference->path};
+    }
     if (options.difference && options.difference->path == "-") {
         reader.fail(wrong_use("--difference: standard output holds the table; name a file"));
     }
@@ -205,10 +209,10 @@ int judge(const Comparison& comparison) {
     int status = 0;
     for (const Run& run : comparison.rows) {
         if (run.differ == 0 || !run.algorithm->exact) continue;
-        fmt::print(stderr,
-                   "sightline: '{}' promises exactness but differs from '{}' in {} of {} "
-                   "samples; --difference FILE.png shows where\n",
-                   run.algorithm->name, comparison.reference->name, run.differ, run.samples);
+        tell_line(
+            "'{}' promises exactness but differs from '{}' in {} of {} samples; --difference "
+            "FILE.png shows where",
+            run.algorithm->name, comparison.reference->name, run.differ, run.samples);
         status = 1;
     }
     return status;
@@ -252,11 +256,10 @@ Result<int> run(const Arguments& arguments) {
     }
     progress.clear();
     if (options->common.stats) {
-        fmt::print(stderr, "{}",
-                   to_table({{"", "load", milliseconds(load_ms), "ms"},
-                             {"", "project", milliseconds(project_ms), "ms"},
-                             {"", "triangles", scene->triangle_count(), ""}}));
-        fmt::print(stderr, "{}", counts_as_text(*comparison));
+        tell(to_table({{"", "load", milliseconds(load_ms), "ms"},
+                       {"", "project", milliseconds(project_ms), "ms"},
+                       {"", "triangles", scene->triangle_count(), ""}}));
+        tell(counts_as_text(*comparison));
     }
     const auto text = options->common.json ? as_json : as_text;
     if (Status done = print(text(*comparison)); !done) return done.error();

@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "streams.hpp"
 #include "view_notes.hpp"
 
 namespace sightline::cli {
@@ -246,9 +247,8 @@ Result<int> run(const Arguments& arguments) {
     view.print(notes, "the picture is blank");
     progress.clear();
     if (options->common.stats) {
-        fmt::print(stderr, "{}",
-                   to_table({{"", "load", milliseconds(watch.ms()), "ms"},
-                             {"", "peak memory", peak_memory_mib(), "MiB"}}));
+        tell(to_table({{"", "load", milliseconds(watch.ms()), "ms"},
+                       {"", "peak memory", peak_memory_mib(), "MiB"}}));
     }
     const auto write = options->common.json ? as_json : as_text;
     if (Status done = print(write(*options, *scene, *camera)); !done) return done.error();

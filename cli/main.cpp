@@ -2,7 +2,6 @@
 // on standard error and an exit status (0 done, 1 the job failed, 2 wrong use).
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -13,6 +12,7 @@
 #include "errors.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "streams.hpp"
 #include "suggest.hpp"
 
 namespace sightline::cli {
@@ -67,7 +67,7 @@ Result<int> run_program(const Words& words) {
 }
 
 int report(const Error& error) {
-    fmt::print(stderr, "sightline: {}\n", error.message);
+    tell_line(error.message);
     return exit_status(error.kind);
 }
 
@@ -76,6 +76,7 @@ int report(const Error& error) {
 
 int main(int argc, char** argv) {
     using namespace sightline;
+    cli::occupy_closed_streams();
     cli::install_signal_handlers();
     try {
         const Result<int> result = cli::run_program({argv + 1, argv + argc});

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include "streams.hpp"
 
 namespace sightline::cli {
 
 void Notes::print(std::string_view kind, std::string_view text) const {
     if (quiet_) return;
     progress_.clear();
-    fmt::print(stderr, "sightline: {}: {}\n", kind, text);
+    tell_line("{}: {}", kind, text);
 }
 
 void Notes::warn_of_files(const Scene& scene) const {

@@ -9,11 +9,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 
 #include "errors.hpp"
-#include "signals.hpp"
+#include "image/rename_all.hpp"
 #include "suggest.hpp"
 
 namespace sightline::cli {
@@ -78,6 +77,10 @@ std::optional<Error> check_place(const OutputPlace& output) {
     if (fs::is_directory(path, ignored)) {
         return failure("{}: '{}' is a folder; name a file in it", output.option, output.path);
     }
+    if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+        return failure("{}: '{}' in '{}' is a file and no folder; write elsewhere", output.option,
+                       folder.string(), output.path);
+    }
     if (!fs::is_directory(folder, ignored)) {
         return failure("{}: the folder '{}' of '{}' does not exist; create it first", output.option,
                        folder.string(), output.path);
@@ -93,15 +96,11 @@ std::optional<Error> check_place(const OutputPlace& output) {
     return std::nullopt;
 }
 
-/// Gives a complete temporary file its name, and the permissions of a file that it replaces.
-Status rename_to_target(const TemporaryFile& file, const Output& output) {
-    std::error_code error;
-    const fs::path target = identity(output.path);
-    const fs::file_status old = fs::status(target, error);
-    if (fs::exists(old)) fs::permissions(file.path(), old.permissions(), error);
-    fs::rename(file.path(), target, error);
-    if (!error) return success();
-    return failure("cannot write '{}': {}; write elsewhere", output.path, error.message());
+/// Gives a complete temporary file the permissions of the file that it is to replace.
+void take_permissions(const std::string& staged, const fs::path& target) {
+    std::error_code ignored;
+    const fs::file_status old = fs::status(target, ignored);
+    if (fs::exists(old)) fs::permissions(staged, old.permissions(), ignored);
 }
 
 /// The message of the library with the name that the user gave.
@@ -117,18 +116,6 @@ Error with_name(Error error, const std::string& staged, const std::string& wante
 void use_exr_threads(int threads) {
     const int count = threads > 0 ? threads : tbb::info::default_concurrency();
     if (count > 1) Imf::setGlobalThreadCount(count);
-}
-
-TemporaryFile::TemporaryFile(const fs::path& folder, std::string_view ending) {
-    static unsigned counter = 0;
-    path_ = (folder / fmt::format(".sightline-{}-{}.{}", getpid(), counter++, ending)).string();
-    ticket_ = remember_file(path_);
-}
-
-TemporaryFile::~TemporaryFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-    forget_file(ticket_);
 }
 
 template <class Format>
@@ -213,23 +200,32 @@ OutputBatch::OutputBatch(std::vector<Output> outputs) : outputs_(std::move(outpu
     if (outputs_.size() == 1) return;
     for (std::ptrdiff_t i = 0; i < files; ++i) {
         const fs::path folder = folder_of(identity(outputs_[static_cast<std::size_t>(i)].path));
-        staged_.push_back(std::make_unique<TemporaryFile>(folder, "staged"));
+        staged_.emplace_back(folder.string());
     }
 }
 
 const std::string& OutputBatch::path(std::size_t i) const {
-    return i < staged_.size() ? staged_[i]->path() : outputs_[i].path;
+    return i < staged_.size() ? staged_[i].path() : outputs_[i].path;
 }
 
 Status OutputBatch::publish(Status written) {
+    std::vector<Renaming> renamings;
     for (std::size_t i = 0; i < staged_.size(); ++i) {
+        const std::string& staged = staged_[i].path();
         if (!written) {
-            written = with_name(written.error(), staged_[i]->path(), outputs_[i].path);
-        } else {
-            written = rename_to_target(*staged_[i], outputs_[i]);
+            written = with_name(written.error(), staged, outputs_[i].path);
+            continue;
         }
+        const fs::path target = identity(outputs_[i].path);
+        take_permissions(staged, target);
+        renamings.push_back({staged, target.string()});
     }
-    return written;
+    if (!written) return written;
+    if (const auto failed = rename_all(renamings)) {
+        return failure("cannot write '{}': {}; write elsewhere", outputs_[failed->index].path,
+                       std::system_category().message(failed->error_number));
+    }
+    return success();
 }
 
 }  // namespace sightline::cli

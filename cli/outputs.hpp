@@ -1,14 +1,13 @@
 // The files a command writes: checked before any work, and all of them or none appear.
 #pragma once
 
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "image/temporary_file.hpp"
 #include "options.hpp"
 #include "sightline/image.hpp"
 #include "sightline/vector.hpp"
@@ -47,22 +46,6 @@ void check_outputs(OptionReader& reader, std::span<const Output> outputs,
 /// leaves it alone. The bytes are the same. 0 = all cores.
 void use_exr_threads(int threads);
 
-/// A name for a file that must not stay: removed by the destructor and when the program is stopped.
-class TemporaryFile {
-public:
-    /// A name in the folder that nothing else uses; the file itself is made by whoever writes it.
-    TemporaryFile(const std::filesystem::path& folder, std::string_view ending);
-    ~TemporaryFile();
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-    int ticket_ = -1;
-};
-
 /// Files that appear together: several of them are written beside their targets under temporary
 /// names, and renamed when every one of them is complete.
 class OutputBatch {
@@ -79,7 +62,7 @@ public:
 
 private:
     std::vector<Output> outputs_;
-    std::vector<std::unique_ptr<TemporaryFile>> staged_;  // of the first outputs, if any
+    std::vector<TemporaryFile> staged_;  // of the first outputs, if any
 };
 
 }  // namespace sightline::cli

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "errors.hpp"
+#include "scene/load/text.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -15,11 +16,11 @@ constexpr double kAutomaticHeight = 0.4;  // of the longer side of the domain
 const glm::dvec3 kRidgeDirection(0, -0.8, -1);
 
 Error nothing_there(const PlotCommandOptions& options, const PlotDomain& domain) {
-    return {
-        ErrorKind::bad_input,
-        fmt::format("{}: no height anywhere over x {:g}:{:g}, z {:g}:{:g}; choose another --x, "
-                    "--z or --y",
-                    options.items.front().text, domain.x.x, domain.x.y, domain.z.x, domain.z.y)};
+    return {ErrorKind::bad_input,
+            fmt::format("{}: no height anywhere over x {:g}:{:g}, z {:g}:{:g}; choose another --x, "
+                        "--z or --y",
+                        load::shortened(options.items.front().text), domain.x.x, domain.x.y,
+                        domain.z.x, domain.z.y)};
 }
 
 Result<std::vector<HeightMap>> load_maps(const PlotCommandOptions& options) {

@@ -5,7 +5,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdio>
+
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -22,8 +23,7 @@ Progress::~Progress() { clear(); }
 void Progress::stage(std::string_view what) {
     if (!shown_) return;
     line_is_dirty = true;
-    fmt::print(stderr, "{}sightline: {}{} ...", kEraseLine, frame_, what);
-    std::fflush(stderr);
+    tell(fmt::format("{}sightline: {}{} ...", kEraseLine, frame_, what));
 }
 
 void Progress::stage(std::string_view what, unsigned done, unsigned all) {
@@ -36,8 +36,7 @@ void Progress::frame(unsigned number, unsigned all) {
 
 void Progress::clear() {
     if (!shown_ || !line_is_dirty.exchange(false)) return;
-    fmt::print(stderr, "{}", kEraseLine);
-    std::fflush(stderr);
+    tell(kEraseLine);
 }
 
 void clear_progress_from_signal_handler() {

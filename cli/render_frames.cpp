@@ -353,7 +353,7 @@ std::string numbered(const std::string& path, std::uint32_t number) {
     return fmt::format("{}{:0{}}{}", path.substr(0, first), number, end - first, path.substr(end));
 }
 
-void check_frame_outputs(OptionReader& reader, const RenderOptions& options,
+void check_frame_outputs(OptionReader& reader, RenderOptions& options,
                          std::span<const Output> outputs) {
     const bool frames = options.frames.count > 0;
     for (const Output& output : outputs) check_name(reader, output, frames);
@@ -367,6 +367,7 @@ void check_frame_outputs(OptionReader& reader, const RenderOptions& options,
         }
         if (!options.tree.save.empty()) files.push_back({{"--bsp-save", options.tree.save}});
         check_outputs(reader, files, inputs);
+        for (const Output& file : files) options.models.options.outputs.push_back(file.path);
     }
 }
 

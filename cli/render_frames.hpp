@@ -22,7 +22,7 @@ void read_tree_files(OptionReader& reader, RenderOptions& options);
 
 /// The names of the outputs: a run of '#' in each where there are frames, none elsewhere; and all
 /// files of all frames as check_outputs() does.
-void check_frame_outputs(OptionReader& reader, const RenderOptions& options,
+void check_frame_outputs(OptionReader& reader, RenderOptions& options,
                          std::span<const Output> outputs);
 
 /// What the frames took and found, in sum: times in milliseconds.

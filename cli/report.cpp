@@ -13,6 +13,8 @@
 #include <system_error>
 
 #include "errors.hpp"
+#include "scene/load/text.hpp"
+#include "streams.hpp"
 
 namespace sightline::cli {
 namespace {
@@ -43,7 +45,7 @@ struct JsonMaker {
 
 std::string cell(const Value& value) {
     const Value::Data& data = value.data();
-    if (const auto* text = std::get_if<std::string>(&data)) return *text;
+    if (const auto* text = std::get_if<std::string>(&data)) return load::clean_text(*text);
     if (const auto* number = std::get_if<double>(&data)) return fmt::format("{:.2f}", *number);
     if (const auto* flag = std::get_if<bool>(&data)) return *flag ? "yes" : "no";
     return to_json(value);
@@ -115,16 +117,18 @@ std::string to_grid(const std::vector<std::vector<std::string>>& rows) {
         widths.resize(std::max(widths.size(), row.size()));
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
     }
-    const auto is_right = [&](std::size_t column) {
-        return rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
-                   return column < row.size() && is_number(row[column]);
-               });
-    };
+    std::vector<bool> is_right(widths.size(), rows.size() > 1);
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+        for (std::size_t i = 0; i < widths.size(); ++i) {
+            is_right[i] = is_right[i] && i < rows[r].size() && is_number(rows[r][i]);
+        }
+    }
     std::string grid;
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
-            grid += is_right(i) ? fmt::format("{:>{}}  ", row[i], widths[i])
-                                : fmt::format("{:<{}}  ", row[i], widths[i]);
+            const std::string text = load::clean_text(row[i]);
+            grid += is_right[i] ? fmt::format("{:>{}}  ", text, widths[i])
+                                : fmt::format("{:<{}}  ", text, widths[i]);
         }
         while (!grid.empty() && grid.back() == ' ') grid.pop_back();
         grid += '\n';
@@ -140,7 +144,7 @@ Status print(std::string_view text) {
 }
 
 Status print_rows(const std::vector<Row>& rows, bool as_table, bool as_json) {
-    if (as_table) fmt::print(stderr, "{}", to_table(rows));
+    if (as_table) tell(to_table(rows));
     return as_json ? print(to_json(to_object(rows)) + "\n") : success();
 }
 

@@ -1,81 +1,105 @@
 // Signal handlers. They call only functions that POSIX lists as safe in a handler (write, unlink,
-// getpid, _exit) and read only lock-free atomics and fixed arrays.
+// poll, getpid, _exit) and read only lock-free atomics and fixed arrays.
 #include "signals.hpp"
 
+#include <poll.h>
+#include <sys/resource.h>
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 
-#include "image/atomic_file.hpp"
+#include "image/temporary_file.hpp"
 #include "progress.hpp"
 
 namespace sightline::cli {
 namespace {
 
-constexpr int kInterruptedStatus = 130, kFailedStatus = 1;
-constexpr std::size_t kMaxFiles = 16, kMaxPath = 4096;
+constexpr int kInterruptedStatus = 130, kFailedStatus = 1, kNobodyReadsStatus = 128 + SIGPIPE;
 
-struct RememberedFile {
-    std::atomic<bool> used{false};   // belongs to a ticket
-    std::atomic<bool> valid{false};  // the path is complete
-    std::array<char, kMaxPath> path{};
-};
-
-std::array<RememberedFile, kMaxFiles> remembered_files;
 std::atomic<pid_t> main_process{0};
 std::array<char, 160> time_limit_message{};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
-
-void remove_files() {
-    remove_temporary_files_from_signal_handler();
-    for (RememberedFile& file : remembered_files) {
-        if (file.valid.load()) unlink(file.path.data());
-    }
-}
+constexpr char kProcessorTimeMessage[] =
+    "sightline: the limit on processor time (ulimit -t) is reached; raise it or ask for less\n";
+static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 /// A child process (one that parses a model) inherits the handlers, but owns no file.
 bool is_child() { return getpid() != main_process.load(); }
 
-extern "C" void stop_on_signal(int) {
+/// Ends the program with a message, which may be empty.
+[[noreturn]] void stop(int status, const char* message) {
     if (!is_child()) {
-        remove_files();
+        remove_temporary_files_from_signal_handler();
         clear_progress_from_signal_handler();
-    }
-    _exit(kInterruptedStatus);
-}
-
-extern "C" void stop_on_time_limit(int) {
-    if (!is_child()) {
-        remove_files();
-        clear_progress_from_signal_handler();
-        const auto written =
-            write(STDERR_FILENO, time_limit_message.data(), std::strlen(time_limit_message.data()));
+        const auto written = write(STDERR_FILENO, message, std::strlen(message));
         static_cast<void>(written);  // nothing more can be done
     }
-    _exit(kFailedStatus);
+    _exit(status);
+}
+
+extern "C" void stop_on_signal(int) { stop(kInterruptedStatus, ""); }
+extern "C" void stop_on_time_limit(int) { stop(kFailedStatus, time_limit_message.data()); }
+extern "C" void stop_on_processor_time(int) { stop(kFailedStatus, kProcessorTimeMessage); }
+
+/// Another pipe than standard output is left to the error that the write returns.
+extern "C" void stop_on_closed_pipe(int) {
+    pollfd out{STDOUT_FILENO, 0, 0};
+    if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) stop(kNobodyReadsStatus, "");
 }
 
 void catch_signal(int signal, void (*handler)(int)) {
     struct sigaction action = {};
     action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
     sigfillset(&action.sa_mask);
     sigaction(signal, &action, nullptr);
+}
+
+bool is_ignored(int signal) {
+    struct sigaction action = {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// At the hard limit the system kills without SIGXCPU; `ulimit -t` sets both. So the signal is
+/// asked for a little earlier.
+void expect_end_of_processor_time() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_max == RLIM_INFINITY ||
+        limit.rlim_cur < limit.rlim_max) {
+        return;
+    }
+    sigevent event = {};
+    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_signo = SIGXCPU;
+    timer_t timer{};
+    if (timer_create(CLOCK_PROCESS_CPUTIME_ID, &event, &timer) != 0) return;
+    constexpr double kLongestLimit = 1e9, kEarlier = 0.25;  // seconds
+    const double end = std::min(static_cast<double>(limit.rlim_max), kLongestLimit) - kEarlier;
+    itimerspec when = {};
+    when.it_value.tv_sec = static_cast<time_t>(std::max(end, 0.0));
+    when.it_value.tv_nsec = static_cast<long>(1e9 * std::max(end - std::floor(end), 0.001));
+    timer_settime(timer, TIMER_ABSTIME, &when, nullptr);
 }
 
 }  // namespace
 
 void install_signal_handlers() {
     main_process = getpid();
-    catch_signal(SIGINT, stop_on_signal);
-    catch_signal(SIGTERM, stop_on_signal);
-    catch_signal(SIGHUP, stop_on_signal);
-    catch_signal(SIGPIPE, SIG_IGN);
+    for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGALRM, SIGUSR1, SIGUSR2, SIGVTALRM}) {
+        catch_signal(signal, stop_on_signal);
+    }
+    if (!is_ignored(SIGHUP)) catch_signal(SIGHUP, stop_on_signal);  // it is by nohup
+    catch_signal(SIGPIPE, stop_on_closed_pipe);
+    catch_signal(SIGXCPU, stop_on_processor_time);
+    std::signal(SIGXFSZ, SIG_IGN);
+    expect_end_of_processor_time();
 }
 
 void start_time_limit(double seconds) {
@@ -89,25 +113,6 @@ void start_time_limit(double seconds) {
     timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 1e6);
     if (timer.it_value.tv_sec == 0 && timer.it_value.tv_usec == 0) timer.it_value.tv_usec = 1;
     setitimer(ITIMER_REAL, &timer, nullptr);
-}
-
-int remember_file(const std::string& path) {
-    if (path.size() >= kMaxPath) return -1;
-    for (std::size_t i = 0; i < kMaxFiles; ++i) {
-        RememberedFile& file = remembered_files[i];
-        if (file.used.exchange(true)) continue;
-        std::memcpy(file.path.data(), path.c_str(), path.size() + 1);
-        file.valid = true;
-        return static_cast<int>(i);
-    }
-    return -1;
-}
-
-void forget_file(int ticket) {
-    if (ticket < 0) return;
-    RememberedFile& file = remembered_files[static_cast<std::size_t>(ticket)];
-    file.valid = false;
-    file.used = false;
 }
 
 }  // namespace sightline::cli

@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
+#include "streams.hpp"
 #include "trace_options.hpp"
 #include "view_notes.hpp"
 
@@ -137,9 +138,14 @@ double fraction_of(const FaceArea& area) {
     return area.projected > 0 ? std::clamp(area.visible / area.projected, 0.0, 1.0) : 0;
 }
 
+/// A name that begins like a formula would be computed by a spreadsheet; an apostrophe tells it
+/// that this is text.
 std::string csv_name(const std::string& name) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-    std::string quoted = "\"";
+    const bool is_formula = !name.empty() &&
+                            std::string_view("=+-@").find(name.front()) != std::string_view::npos &&
+                            !parse_number(name);
+    if (!is_formula && name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    std::string quoted = is_formula ? "\"'" : "\"";
     for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + '"';
 }
@@ -345,10 +351,9 @@ Result<int> run(const Arguments& arguments) {
     if (!text) return text.error();
     progress.clear();
     if (options->common.stats) {
-        fmt::print(stderr, "{}",
-                   to_table({{"", "load", milliseconds(load_ms), "ms"},
-                             {"", "find what is visible", milliseconds(watch.ms()), "ms"},
-                             {"", "peak memory", peak_memory_mib(), "MiB"}}));
+        tell(to_table({{"", "load", milliseconds(load_ms), "ms"},
+                       {"", "find what is visible", milliseconds(watch.ms()), "ms"},
+                       {"", "peak memory", peak_memory_mib(), "MiB"}}));
     }
     if (Status done = print(*text); !done) return done.error();
     return 0;

@@ -28,6 +28,9 @@ struct LoadOptions {
     /// Scene::offset, when it is decided already: parts of a larger scene share that of the whole,
     /// offset_for() its box. 0 keeps the coordinates of the files.
     std::optional<glm::dvec3> offset;
+    /// Files that the caller is going to write. A model that reads one of them, or names it as a
+    /// texture, is refused (bad_option), so that no output takes the place of an input.
+    std::vector<std::string> outputs;
     /// False: Scene::sheets stay empty, for they will be those of a StreamPlan.
     bool find_sheets = true;
 };

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,42 +18,7 @@ namespace {
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 
-// -- the registry of temporary names --------------------------------------------------------------
-// Fixed memory and lock-free flags, so that a signal handler may read it at any moment.
-
-constexpr std::size_t kSlots = 64;
 constexpr std::size_t kLongestPath = 4096;  // PATH_MAX of Linux, the closing zero included
-
-enum SlotState : int { kFree, kFilling, kLive };
-
-struct Slot {
-    std::atomic<int> state{kFree};
-    std::array<char, kLongestPath> name{};
-};
-static_assert(std::atomic<int>::is_always_lock_free);
-
-// Made by the loader of the program, so that a handler can't meet it half made.
-constinit std::array<Slot, kSlots> slots;
-
-/// A slot that holds the name from now on, or -1 when none is free.
-int register_name(const std::string& name) {
-    if (name.size() >= kLongestPath) return -1;
-    for (std::size_t i = 0; i < kSlots; ++i) {
-        Slot& slot = slots[i];
-        int expected = kFree;
-        if (!slot.state.compare_exchange_strong(expected, kFilling)) continue;
-        std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
-        slot.state.store(kLive);
-        return static_cast<int>(i);
-    }
-    return -1;
-}
-
-void release_slot(int slot) noexcept {
-    if (slot >= 0) slots[static_cast<std::size_t>(slot)].state.store(kFree);
-}
-
-// -- messages -------------------------------------------------------------------------------------
 
 std::string folder_of(const std::string& path) {
     const std::size_t slash = path.find_last_of('/');
@@ -64,8 +28,9 @@ std::string folder_of(const std::string& path) {
 
 std::string way_out(int error_number, const std::string& path) {
     switch (error_number) {
-        case ENOENT:
         case ENOTDIR:
+            return fmt::format("'{}' is no folder", folder_of(path));
+        case ENOENT:
             return fmt::format("create the folder '{}' first", folder_of(path));
         case EACCES:
         case EPERM:
@@ -101,12 +66,6 @@ std::string resolved(const std::string& path) {
 
 }  // namespace
 
-void remove_temporary_files_from_signal_handler() noexcept {
-    for (Slot& slot : slots) {
-        if (slot.state.load() == kLive) ::unlink(slot.name.data());
-    }
-}
-
 Result<AtomicFile> AtomicFile::create(const std::string& path, Access access) {
     AtomicFile file;
     file.path_ = path;
@@ -134,26 +93,20 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, Access access) {
 }
 
 Status AtomicFile::open_temporary(const std::string& target) {
-    static std::atomic<unsigned> counter{0};
     if (target.empty() || target.back() == '/') return write_error(path_, ENOENT);
-    for (;;) {
-        const std::string name =
-            fmt::format("{}/.sightline-{}-{}.tmp", folder_of(target), ::getpid(), counter++);
-        const int slot = register_name(name);
-        const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    temporary_ = TemporaryFile(folder_of(target));
+    // In one step, so that a signal finds the file or prevents it. Whatever bears the name already
+    // is not ours, and not followed if it is a link.
+    const UninterruptedStep step;
+    descriptor_ = ::open(temporary_.path().c_str(),
+                         O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
         const int error_number = errno;
-        if (descriptor >= 0) {
-            descriptor_ = descriptor;
-            slot_ = slot;
-            temporary_ = name;
-            target_ = target;
-            return success();
-        }
-        release_slot(slot);
-        if (error_number != EEXIST && error_number != EINTR) {
-            return write_error(path_, error_number);
-        }
+        temporary_.release();
+        return write_error(path_, error_number);
     }
+    target_ = target;
+    return success();
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept { swap(other); }
@@ -169,9 +122,8 @@ AtomicFile::~AtomicFile() { abandon(); }
 void AtomicFile::swap(AtomicFile& other) noexcept {
     path_.swap(other.path_);
     target_.swap(other.target_);
-    temporary_.swap(other.temporary_);
+    std::swap(temporary_, other.temporary_);
     std::swap(descriptor_, other.descriptor_);
-    std::swap(slot_, other.slot_);
     std::swap(keep_all_, other.keep_all_);
     std::swap(position_, other.position_);
     buffer_.swap(other.buffer_);
@@ -181,10 +133,7 @@ void AtomicFile::swap(AtomicFile& other) noexcept {
 void AtomicFile::abandon() noexcept {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-    temporary_.clear();
-    release_slot(slot_);
-    slot_ = -1;
+    temporary_ = {};
 }
 
 Status AtomicFile::status() const {
@@ -249,10 +198,10 @@ Status AtomicFile::commit() {
     const int descriptor = std::exchange(descriptor_, -1);
     // Some file systems report a full disk only now. The number is closed even after EINTR.
     if (::close(descriptor) != 0 && errno != EINTR) return fail(errno);
-    if (temporary_.empty()) return success();
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) return fail(errno);
-    temporary_.clear();
-    release_slot(std::exchange(slot_, -1));
+    if (temporary_.path().empty()) return success();
+    const UninterruptedStep step;
+    if (::rename(temporary_.path().c_str(), target_.c_str()) != 0) return fail(errno);
+    temporary_.release();
     return success();
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "image/temporary_file.hpp"
 #include "sightline/error.hpp"
 
 namespace sightline {
@@ -55,20 +56,14 @@ private:
     void abandon() noexcept;
     void swap(AtomicFile& other) noexcept;
 
-    std::string path_;       // as the caller wrote it
-    std::string target_;     // what the temporary file is renamed to; empty for a stream
-    std::string temporary_;  // empty for a stream
+    std::string path_;         // as the caller wrote it
+    std::string target_;       // what the temporary file is renamed to; empty for a stream
+    TemporaryFile temporary_;  // without a name for a stream
     int descriptor_ = -1;
-    int slot_ = -1;          // in the registry of temporary names
     bool keep_all_ = false;  // a stream that may be sought in: all bytes stay in buffer_
     std::uint64_t position_ = 0;
     std::vector<char> buffer_;
     std::optional<Error> error_;
 };
-
-/// Removes the temporary files of all AtomicFiles that are being written. May be called from a
-/// signal handler: it calls nothing but unlink(). Files beyond the first 64 open at a time are not
-/// known to it.
-void remove_temporary_files_from_signal_handler() noexcept;
 
 }  // namespace sightline

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "scene/load/text.hpp"
+
 namespace sightline {
 namespace {
 
@@ -27,10 +29,13 @@ std::string complaint(const mu::ParserError& error, std::string_view text) {
         if (at != std::string::npos) what.resize(at);
     }
     while (!what.empty() && (what.back() == '.' || what.back() == ' ')) what.pop_back();
+    what = load::shortened(what);
     if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-        what = fmt::format("'{}' is unknown (variables are x, y and z)", error.GetToken());
+        what = fmt::format("'{}' is unknown (variables are x, y and z)",
+                           load::shortened(error.GetToken()));
     }
-    return fmt::format("{}, at character {} of '{}'", what, error.GetPos() + 1, text);
+    return fmt::format("{}, at character {} of '{}'", what, error.GetPos() + 1,
+                       load::shortened(text));
 }
 
 double floor_of(double x) { return std::floor(x); }
@@ -128,14 +133,15 @@ Result<Formula> parse_formula(std::string_view text) {
     if (text.empty()) return wrong("an empty formula; give one such as \"y = sin(x) * z\"");
     const std::vector<std::size_t> signs = equals_signs(text);
     if (signs.size() > 1) {
-        return wrong(
-            fmt::format("'{}' has {} equals signs; an equation has one", text, signs.size()));
+        return wrong(fmt::format("'{}' has {} equals signs; an equation has one",
+                                 load::shortened(text), signs.size()));
     }
     if (signs.empty()) {
         Result<Formula> alone = function_of(text, text);
         if (alone && alone->value.uses('y')) {
-            return wrong(fmt::format(
-                "'{0}' has y in it but no equals sign; write \"{0} = 0\" for a surface", text));
+            return wrong(
+                fmt::format("'{0}' has y in it but no equals sign; write \"{0} = 0\" for a surface",
+                            load::shortened(text)));
         }
         return alone;
     }
@@ -150,7 +156,7 @@ Result<Formula> parse_formula(std::string_view text) {
     Result<Expression> difference = Expression::parse(fmt::format("({}) - ({})", left, right));
     if (!difference) return difference.error();
     if (!difference->uses('x') && !difference->uses('y') && !difference->uses('z')) {
-        return wrong(fmt::format("'{}' has neither x, y nor z in it", text));
+        return wrong(fmt::format("'{}' has neither x, y nor z in it", load::shortened(text)));
     }
     return Formula{Formula::Kind::implicit, std::move(*difference), std::string(text)};
 }

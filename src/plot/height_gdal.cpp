@@ -6,6 +6,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <string_view>
@@ -32,6 +34,10 @@ struct Gdal {
     using List = const char* const*;
 
     void (*register_all)() = nullptr;
+    int (*driver_count)() = nullptr;
+    Handle (*driver)(int) = nullptr;
+    const char* (*short_name)(Handle) = nullptr;
+    void (*deregister)(Handle) = nullptr;
     void (*set_option)(const char*, const char*) = nullptr;
     void (*reset_error)() = nullptr;
     const char* (*last_error)() = nullptr;
@@ -61,6 +67,10 @@ bool find(Handle library, const char* name, Function& function) {
 
 bool find_all(Handle library, Gdal& gdal) {
     return find(library, "GDALAllRegister", gdal.register_all) &&
+           find(library, "GDALGetDriverCount", gdal.driver_count) &&
+           find(library, "GDALGetDriver", gdal.driver) &&
+           find(library, "GDALGetDriverShortName", gdal.short_name) &&
+           find(library, "GDALDeregisterDriver", gdal.deregister) &&
            find(library, "CPLSetConfigOption", gdal.set_option) &&
            find(library, "CPLErrorReset", gdal.reset_error) &&
            find(library, "CPLGetLastErrorMsg", gdal.last_error) &&
@@ -79,6 +89,24 @@ bool find_all(Handle library, Gdal& gdal) {
            find(library, "GDALRasterIO", gdal.transfer);
 }
 
+/// Formats of heights that keep to their own file and those of the same name beside it. Others name
+/// further files, databases or addresses (VRT, PostGISRaster, WMS), or run code (VRT, with Python).
+constexpr std::array<std::string_view, 31> kDrivers = {
+    "AAIGrid", "ACE2",        "BT",      "DTED",     "EHdr",    "ENVI",     "GRIB",  "GS7BG",
+    "GSAG",    "GSBG",        "GTiff",   "GTX",      "GXF",     "HF2",      "HFA",   "ISG",
+    "JPEG",    "JP2OpenJPEG", "LCP",     "Leveller", "NWT_GRD", "PCRaster", "PNM",   "RST",
+    "SAGA",    "SIGDEM",      "SRTMHGT", "Terragen", "USGSDEM", "XYZ",      "netCDF"};
+
+/// Leaves only these, so that no file and no file beside it is opened by another.
+void keep_drivers(const Gdal& gdal) {
+    for (int i = gdal.driver_count(); i-- > 0;) {
+        const Handle driver = gdal.driver(i);
+        if (std::ranges::find(kDrivers, gdal.short_name(driver)) == kDrivers.end()) {
+            gdal.deregister(driver);
+        }
+    }
+}
+
 /// Nothing when no library has any of these names.
 std::optional<Gdal> load_gdal(const std::vector<std::string>& libraries) {
     Gdal gdal;
@@ -89,11 +117,15 @@ std::optional<Gdal> load_gdal(const std::vector<std::string>& libraries) {
         if (found) break;
     }
     if (!found) return std::nullopt;
-    // A file may name others, but none that lie on another machine.
+    // Nothing is fetched from an address, which a file could name as one beside it.
+    gdal.set_option("CPL_VSIL_CURL_ALLOWED_FILENAME", "none");
     gdal.set_option("CPL_VSIL_CURL_ALLOWED_EXTENSIONS", ".none");
-    gdal.set_option("GDAL_SKIP",
-                    "WMS WCS WMTS HTTP DAAS EEDA EEDAI NGW OGCAPI PLMOSAIC STACIT STACTA");
+    // No code is loaded or run but GDAL's own.
+    gdal.set_option("GDAL_VRT_ENABLE_PYTHON", "NO");
+    gdal.set_option("GDAL_PYTHON_DRIVER_PATH", "");
+    gdal.set_option("GDAL_DRIVER_PATH", "disable");
     gdal.register_all();
+    keep_drivers(gdal);
     return gdal;
 }
 

@@ -21,13 +21,15 @@
 namespace sightline::load {
 namespace {
 
-/// Shows assimp a file under a name whose extension is the wanted format.
+/// Shows assimp a file under a name whose extension is the wanted format, and keeps the paths of
+/// all files that it opens.
 class RenamedFile : public Assimp::DefaultIOSystem {
 public:
-    RenamedFile(std::string alias, std::string path)
-        : alias_(std::move(alias)), path_(std::move(path)) {}
+    RenamedFile(std::string alias, std::string path, std::set<std::string>& opened)
+        : alias_(std::move(alias)), path_(std::move(path)), opened_(opened) {}
     bool Exists(const char* file) const override { return DefaultIOSystem::Exists(real(file)); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
+        opened_.emplace(real(file));
         return DefaultIOSystem::Open(real(file), mode);
     }
 
@@ -36,6 +38,7 @@ private:
         return file == alias_ ? path_.c_str() : file;
     }
     std::string alias_, path_;
+    std::set<std::string>& opened_;
 };
 
 /// Keeps the last error that assimp logs while it goes on reading.
@@ -100,6 +103,15 @@ void collect_textures(const aiMaterial& material, std::set<std::string>& names) 
                 names.emplace(path.C_Str());
         }
     }
+}
+
+/// The names of the textures of all materials that are not invented.
+std::set<std::string> textures_of(const aiScene& scene) {
+    std::set<std::string> names;
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+        if (!is_invented(*scene.mMaterials[i])) collect_textures(*scene.mMaterials[i], names);
+    }
+    return names;
 }
 
 void append_faces(const aiMesh& from, SoupMesh& mesh, std::uint64_t& ignored) {
@@ -169,13 +181,12 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
     Soup soup;
     soup.srgb_colors = !is_linear(format);
     std::vector<std::uint32_t> numbers(scene.mNumMaterials, kNone);
-    std::set<std::string> textures;
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
         if (is_invented(*scene.mMaterials[i])) continue;
         numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
         soup.materials.push_back(material_of(*scene.mMaterials[i]));
-        collect_textures(*scene.mMaterials[i], textures);
     }
+    const std::set<std::string> textures = textures_of(scene);
     if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
         const aiMesh& mesh = *scene.mMeshes[i];
@@ -190,14 +201,16 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
     return soup;
 }
 
-const aiScene* import(Assimp::Importer& importer, const Source& source) {
+const aiScene* import(Assimp::Importer& importer, const Source& source,
+                      std::set<std::string>& opened) {
     if (source.path.empty()) {
         return importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), 0,
                                            source.format.c_str());
     }
-    if (extension_of(source.path) == source.format) return importer.ReadFile(source.path, 0);
-    const std::string alias = source.path + "." + source.format;
-    importer.SetIOHandler(new RenamedFile(alias, source.path));  // the importer deletes it
+    const bool named_so = extension_of(source.path) == source.format;
+    const std::string alias = named_so ? source.path : source.path + "." + source.format;
+    // The importer deletes it.
+    importer.SetIOHandler(new RenamedFile(alias, source.path, opened));
     return importer.ReadFile(alias, 0);
 }
 
@@ -224,11 +237,17 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     auto* const errors = new ErrorLog;  // the logger deletes it
     logger->attachStream(errors, Assimp::Logger::Err);
+    std::set<std::string> opened;
     Assimp::Importer importer;
-    const aiScene* scene = import(importer, source);
+    const aiScene* scene = import(importer, source, opened);
     if (scene == nullptr) return one_line(importer.GetErrorString());
     if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
-    return soup_of(*scene, source.format);
+    Soup soup = soup_of(*scene, source.format);
+    soup.files.assign(opened.begin(), opened.end());
+    for (const std::string& name : textures_of(*scene)) {
+        if (!source.path.empty()) soup.files.push_back(path_beside(source.path, name));
+    }
+    return soup;
 }
 
 }  // namespace sightline::load

@@ -155,11 +155,22 @@ Error out_of_memory(const ChildLimits& limits, const std::string& name) {
                     name, limits.memory_bytes >> 20)};
 }
 
+/// Whether the system allows files that large; what a child hands over counts as one.
+bool may_hand_over(std::size_t bytes) {
+    rlimit limit{};
+    return getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_max >= bytes;
+}
+
 /// The error behind a status of waitpid() other than success.
 Error failure(int status, const ChildLimits& limits, const std::string& name) {
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (signal == SIGXCPU) return out_of_time(limits, name);
+    if (signal == SIGXFSZ && !may_hand_over(limits.memory_bytes)) {
+        return {ErrorKind::io, fmt::format("{}: what was read is larger than the limit on the size "
+                                           "of files (ulimit -f); raise it",
+                                           name)};
+    }
     if (signal == SIGXFSZ || code == kOutOfMemory) return out_of_memory(limits, name);
     if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
         return {ErrorKind::cancelled, fmt::format("{}: reading it was interrupted", name)};

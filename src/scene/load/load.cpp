@@ -11,7 +11,9 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <string_view>
+#include <system_error>
 #include <variant>
 
 #include "scene/finish.hpp"
@@ -92,11 +94,24 @@ Error unknown_format(const std::string& name, const std::string& format) {
                     name, what));
 }
 
+/// Links followed; one spelling for one file.
+std::filesystem::path whole_path(const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+}
+
 /// Loads one file after another into one scene.
 class Loader {
 public:
     explicit Loader(const LoadOptions& options)
-        : options_(options), builder_(options.memory_limit_bytes) {}
+        : options_(options), builder_(options.memory_limit_bytes) {
+        std::error_code ignored;
+        for (const std::string& path : options.outputs) {
+            // What does not exist is no input, and what is written to a device overwrites nothing.
+            if (!std::filesystem::is_regular_file(path, ignored)) continue;
+            outputs_.insert(whole_path(path));
+        }
+    }
 
     [[nodiscard]] Status add_path(const std::string& path);
     [[nodiscard]] Status add_bytes(std::span<const std::byte> bytes, const std::string& name,
@@ -109,6 +124,8 @@ public:
 private:
     [[nodiscard]] Status add_file(const std::string& path, const std::string& format,
                                   const Placement& placement);
+    /// An error when the file is to be written.
+    [[nodiscard]] Status check_input(const std::string& path, const std::string& model);
     [[nodiscard]] Status add_source(const Source& source, const Placement& placement);
     [[nodiscard]] Status add_scene(std::string_view text, const std::string& name,
                                    const std::filesystem::path& folder);
@@ -119,7 +136,8 @@ private:
     std::vector<Motion> motions_;
     std::vector<Light> lights_;
     std::optional<CameraOptions> camera_;
-    std::vector<std::uint32_t> parts_end_;  // one beyond the last object of each part
+    std::vector<std::uint32_t> parts_end_;     // one beyond the last object of each part
+    std::set<std::filesystem::path> outputs_;  // LoadOptions::outputs, one spelling for one file
 };
 
 Placement placement_of(const std::string& name) {
@@ -154,6 +172,7 @@ Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& na
 
 Status Loader::add_file(const std::string& path, const std::string& format,
                         const Placement& placement) {
+    if (Status free = check_input(path, path); !free) return free;
     Result<InputFile> file = InputFile::open(path, options_.file_limit_bytes);
     if (!file) return file.error();
     const bool is_scene = format == "json";
@@ -177,7 +196,18 @@ Status Loader::add_source(const Source& source, const Placement& placement) {
     }
     const Result<Soup> soup = read_soup(source, options_);
     if (!soup) return soup.error();
+    for (const std::string& file : soup->files) {
+        if (Status free = check_input(file, source.name); !free) return free;
+    }
     return builder_.append(*soup, placement);
+}
+
+Status Loader::check_input(const std::string& path, const std::string& model) {
+    if (outputs_.empty() || !outputs_.contains(whole_path(path))) return success();
+    return Error{ErrorKind::bad_option,
+                 fmt::format("'{}' is an input{}, which would be overwritten; choose another name "
+                             "for the output",
+                             path, path == model ? "" : fmt::format(" of '{}'", model))};
 }
 
 Status Loader::add_scene(std::string_view text, const std::string& name,

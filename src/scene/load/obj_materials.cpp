@@ -98,6 +98,7 @@ bool ObjMaterials::load_file(std::string_view name) {
         if (!input) continue;
         const Result<std::vector<std::byte>> bytes = input->read_all();
         if (!bytes) continue;
+        libraries_.insert(file.string());
         parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
         return true;
     }
@@ -142,6 +143,12 @@ std::vector<std::string> ObjMaterials::notes() const {
     }
     if (!textures_.empty()) notes.push_back(note_of_textures(textures_));
     return notes;
+}
+
+std::vector<std::string> ObjMaterials::files() const {
+    std::vector<std::string> files(libraries_.begin(), libraries_.end());
+    for (const std::string& name : textures_) files.push_back(path_beside(path_, name));
+    return files;
 }
 
 std::vector<Material> ObjMaterials::take() {

@@ -33,6 +33,8 @@ public:
     }
     /// All of them, in order of definition or first use. An opacity of 0 has become 1.
     [[nodiscard]] std::vector<Material> take();
+    /// Paths of the material libraries that were read and of the textures that they name.
+    [[nodiscard]] std::vector<std::string> files() const;
     /// What had no effect: files that are missing, textures. See Soup::notes.
     [[nodiscard]] std::vector<std::string> notes() const;
 
@@ -42,7 +44,7 @@ private:
     std::string path_;
     std::vector<Material> materials_;
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
-    std::set<std::string> missing_, textures_;
+    std::set<std::string> missing_, textures_, libraries_;
 };
 
 }  // namespace sightline::load

@@ -283,6 +283,7 @@ Result<Soup> ObjReader::read() {
     make_meshes();
     soup_.materials = materials_.take();
     soup_.notes = materials_.notes();
+    soup_.files = materials_.files();
     if (Status in_time = context_.check(0); !in_time) return in_time.error();
     return std::move(soup_);
 }

@@ -174,6 +174,8 @@ std::vector<std::byte> serialise(const Soup& soup) {
     writer.put(soup.ignored_primitives);
     writer.put(std::uint64_t{soup.notes.size()});
     for (const std::string& note : soup.notes) writer.put_text(note);
+    writer.put(std::uint64_t{soup.files.size()});
+    for (const std::string& file : soup.files) writer.put_text(file);
     writer.put(std::uint64_t{soup.materials.size()});
     for (const Material& material : soup.materials) put(writer, material);
     writer.put(std::uint64_t{soup.meshes.size()});
@@ -191,6 +193,9 @@ std::optional<Soup> deserialise(std::span<const std::byte> bytes) {
     soup.ignored_primitives = reader.get<std::uint64_t>();
     for (std::size_t n = reader.get_count(kLeastText); n > 0 && reader.ok(); --n) {
         soup.notes.push_back(reader.get_text());
+    }
+    for (std::size_t n = reader.get_count(kLeastText); n > 0 && reader.ok(); --n) {
+        soup.files.push_back(reader.get_text());
     }
     for (std::size_t n = reader.get_count(kLeastMaterial); n > 0 && reader.ok(); --n) {
         soup.materials.push_back(get_material(reader));

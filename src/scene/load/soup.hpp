@@ -55,6 +55,8 @@ struct Soup {
     std::vector<SoupObject> objects;       ///< in the file's order, depth first
     std::uint64_t ignored_primitives = 0;  ///< points and lines
     std::vector<std::string> notes;        ///< see Scene::notes; without the file's name
+    /// Paths of the files that were read, the model's own among them or not, and of its textures.
+    std::vector<std::string> files;
 };
 
 /// Bytes for the same program on the same machine.

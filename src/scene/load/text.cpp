@@ -21,9 +21,11 @@ std::size_t character_length(std::string_view text) {
         if ((byte(i) & 0xc0) != 0x80) return 0;
     }
     // Over-long forms, surrogates, and what lies beyond U+10FFFF.
+    // Control characters again, which some terminals obey: U+0080 to U+009F.
     const unsigned second = byte(1);
-    const bool wrong = (lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
-                       (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f);
+    const bool wrong = (lead == 0xc2 && second < 0xa0) || (lead == 0xe0 && second < 0xa0) ||
+                       (lead == 0xed && second > 0x9f) || (lead == 0xf0 && second < 0x90) ||
+                       (lead == 0xf4 && second > 0x8f);
     return wrong ? 0 : length;
 }
 
@@ -61,6 +63,21 @@ std::string one_line(std::string_view message) {
         message.remove_suffix(1);
     }
     return clean_text(message.substr(0, kLongestMessage));
+}
+
+std::string shortened(std::string_view text) {
+    constexpr std::size_t kLongest = 80;
+    constexpr std::string_view kMore = "...";
+    if (text.size() <= kLongest) return std::string(text);
+    std::size_t end = kLongest - kMore.size();
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // of UTF-8
+    return std::string(text.substr(0, end)).append(kMore);
+}
+
+std::string path_beside(const std::string& model, std::string_view name) {
+    std::string portable(name);
+    std::ranges::replace(portable, '\\', '/');
+    return (std::filesystem::path(model).parent_path() / portable).string();
 }
 
 std::string note_of_textures(const std::set<std::string>& names) {

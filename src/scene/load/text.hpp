@@ -19,6 +19,13 @@ namespace sightline::load {
 /// The first line of a message of a foreign library, cleaned and cut to a readable length.
 [[nodiscard]] std::string one_line(std::string_view message);
 
+/// As much of a text that a user gave as a message repeats: 80 bytes, whole characters.
+[[nodiscard]] std::string shortened(std::string_view text);
+
+/// Where a file lies that a model names: its name may be relative to the model's folder and have
+/// the slashes of Windows.
+[[nodiscard]] std::string path_beside(const std::string& model, std::string_view name);
+
 /// What is noted of the textures of a file, by their names; "" when there are none.
 [[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);
 
