@@ -115,15 +115,18 @@ std::string to_grid(const std::vector<std::vector<std::string>>& rows) {
         widths.resize(std::max(widths.size(), row.size()));
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
     }
-    const auto is_right = [&](std::size_t column) {
-        return rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
-                   return column < row.size() && is_number(row[column]);
-               });
-    };
+    // A column of numbers stands on the right.
+    std::vector<bool> is_right(widths.size(), rows.size() > 1);
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+        is_right[i] =
+            is_right[i] && std::all_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
+                return i < row.size() && is_number(row[i]);
+            });
+    }
     std::string grid;
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
-            grid += is_right(i) ? fmt::format("{:>{}}  ", row[i], widths[i])
+            grid += is_right[i] ? fmt::format("{:>{}}  ", row[i], widths[i])
                                 : fmt::format("{:<{}}  ", row[i], widths[i]);
         }
         while (!grid.empty() && grid.back() == ' ') grid.pop_back();

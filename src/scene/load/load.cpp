@@ -59,7 +59,7 @@ bool is_utf16(std::string_view bytes) {
 Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
     if (has_own_reader(source.format) && !is_utf16(text_of(source.bytes))) {
         const ReadContext context(source.name, source.path, options.time_limit_seconds,
-                                  options.memory_limit_bytes);
+                                  options.memory_limit_bytes, options.allowed_paths);
         return read_own_format(source.format, text_of(source.bytes), context);
     }
     const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};

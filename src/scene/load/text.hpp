@@ -10,6 +10,12 @@ namespace sightline::load {
 /// The text with control characters and bytes that are no UTF-8 replaced by '?'.
 [[nodiscard]] std::string clean_text(std::string_view text);
 
+/// The text without the byte order mark (UTF-8) that some programs begin it with.
+[[nodiscard]] std::string_view without_mark(std::string_view text);
+
+/// The last component of a path of any system.
+[[nodiscard]] std::string_view last_component(std::string_view path);
+
 /// The extension of a file's name in lower case, without the dot; "" when there is none.
 [[nodiscard]] std::string extension_of(std::string_view path);
 
