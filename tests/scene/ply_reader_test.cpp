@@ -273,11 +273,11 @@ TEST(PlyReader, LinesThatContradictTheHeader) {
         " is not the line of values that the header describes; repair the line or export the file "
         "again";
     EXPECT_EQ(error("0 0 0 1 2 3 4\n1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n3 0 1 2\n"),
-              "input.ply:12: vertex" + way_out);
+              "input.ply:13: vertex" + way_out);
     EXPECT_EQ(error("0 0 0\n1 0 0\n1 1 0\n1 1 1\n0 0 0\n0 0 0\n3 0 1 2\n"),
               "input.ply:13: vertex" + way_out);
     EXPECT_EQ(error("0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n3 0 1 2 9\n"),
-              "input.ply:15: face" + way_out);
+              "input.ply:16: face" + way_out);
 }
 
 TEST(PlyReader, ByteOrderMarksAndOddLineEnds) {

@@ -8,9 +8,14 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sightline::load {
+
+/// Why a file is not read that lies elsewhere, and the way out; follows its name in a message.
+inline constexpr std::string_view kOutsideReason =
+    "lies outside of the model's folder and is not read (allow its folder with --allow-path DIR)";
 
 class NamedFiles {
 public:

@@ -178,8 +178,7 @@ std::string_view ObjMaterials::reason(Outcome outcome) const {
     if (context_.path().empty()) return "can't be read, as the model comes without a folder";
     switch (outcome) {
         case Outcome::outside:
-            return "lies outside of the model's folder and is not read (allow its folder with "
-                   "--allow-path DIR)";
+            return kOutsideReason;
         case Outcome::unreadable:
             return "is not a file of at most 64 MiB that may be read";
         default:

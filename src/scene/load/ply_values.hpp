@@ -44,10 +44,16 @@ public:
         by_lines_ = lines >= records;
     }
     void begin_record() {
-        if (by_lines_ && skip_space()) line_end_ = skip_to_line_end(p_);
+        if (!by_lines_ || !skip_space()) return;
+        record_ = p_;
+        line_end_ = skip_to_line_end(p_);
     }
-    /// Whether the record just read is all that stands in its line.
-    [[nodiscard]] bool ends_record() const { return !by_lines_ || skip_blanks(p_) == line_end_; }
+    /// Whether the record just read is all that stands in its line; if not, back to its start.
+    [[nodiscard]] bool ends_record() {
+        if (!by_lines_ || skip_blanks(p_) == line_end_) return true;
+        p_ = record_;
+        return false;
+    }
     /// Moves on to the next value; false when there is none.
     bool skip_space() {
         while (p_ < end_ && (is_blank(*p_) || is_line_end(*p_))) ++p_;
@@ -96,7 +102,8 @@ private:
     }
     const char* p_;
     const char* end_;
-    const char* line_end_ = nullptr;  ///< of the record at hand
+    const char* record_ = nullptr;  ///< the one at hand
+    const char* line_end_ = nullptr;
     bool by_lines_ = false;
 };
 

@@ -1,0 +1,36 @@
+// The files that assimp may open: the model, and what it names as far as NamedFiles allows it.
+#pragma once
+
+#include <assimp/DefaultIOSystem.h>
+
+#include <set>
+#include <string>
+
+#include "scene/load/named_files.hpp"
+
+namespace sightline::load {
+
+class AssimpFiles : public Assimp::DefaultIOSystem {
+public:
+    /// assimp sees the model at `path` under the name `alias`, whose extension is its format.
+    /// `refused` takes the names of the files that were not opened, and must outlive this.
+    AssimpFiles(std::string alias, std::string path, NamedFiles named,
+                std::set<std::string>& refused)
+        : alias_(std::move(alias)),
+          path_(std::move(path)),
+          named_(std::move(named)),
+          refused_(refused) {}
+
+    bool Exists(const char* file) const override;
+    /// For reading only.
+    Assimp::IOStream* Open(const char* file, const char* mode) override;
+
+private:
+    [[nodiscard]] bool may_open(const std::string& file) const;
+
+    std::string alias_, path_;
+    NamedFiles named_;
+    std::set<std::string>& refused_;
+};
+
+}  // namespace sightline::load
