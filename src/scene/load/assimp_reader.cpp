@@ -166,12 +166,16 @@ void append_materials(const aiScene& scene, Soup& soup, std::vector<std::uint32_
     if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
 }
 
-/// The up axis that an FBX file states; y, which all else here has, when it states none.
-int up_axis_of(const aiScene& scene) {
-    constexpr int kY = 1;
-    int axis = kY;
-    if (scene.mMetaData != nullptr) scene.mMetaData->Get("UpAxis", axis);
-    return axis;
+/// The up axis that an FBX file states, such as "0,0,1"; y, which all else here has, when it states
+/// none.
+std::string up_axis_of(const aiScene& scene) {
+    int axis = 1, sign = 1;
+    if (scene.mMetaData != nullptr) {
+        scene.mMetaData->Get("UpAxis", axis);
+        scene.mMetaData->Get("UpAxisSign", sign);
+    }
+    const auto at = [&](int i) { return i != axis ? 0 : sign < 0 ? -1 : 1; };
+    return fmt::format("{},{},{}", at(0), at(1), at(2));
 }
 
 /// What the file holds that shapes it and is not read.
@@ -190,9 +194,9 @@ void note_what_is_not_read(const aiScene& scene, Soup& soup) {
         soup.notes.push_back(
             fmt::format("morph targets are not read, so meshes stand without them: {}", morphed));
     }
-    if (const int axis = up_axis_of(scene); axis == 0 || axis == 2) {
-        soup.notes.push_back(fmt::format("the file's up axis {} is not taken for y; give --up {}",
-                                         "xyz"[axis], axis == 0 ? "1,0,0" : "0,0,1"));
+    if (const std::string up = up_axis_of(scene); up != "0,1,0") {
+        soup.notes.push_back(
+            fmt::format("the file says that {0} is upwards, but y is here; give --up {0}", up));
     }
 }
 
@@ -227,8 +231,8 @@ std::string list_of(const std::set<std::string>& refused) {
 /// All bytes of a model; none when they can't be read.
 std::vector<std::byte> bytes_of(const Source& source) {
     if (source.path.empty()) return {source.bytes.begin(), source.bytes.end()};
-    const Result<InputFile> file =
-        InputFile::open(source.path, std::numeric_limits<std::size_t>::max());
+    constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max() / 2;
+    const Result<InputFile> file = InputFile::open(source.path, kNoLimit);
     Result<std::vector<std::byte>> bytes = file ? file->read_all() : file.error();
     return bytes ? std::move(*bytes) : std::vector<std::byte>{};
 }
