@@ -1,6 +1,11 @@
 #include "scene/load/assimp_files.hpp"
 
+#include <assimp/MemoryIOWrapper.h>
+
+#include <cstdint>
 #include <string_view>
+
+#include "scene/load/text.hpp"
 
 namespace sightline::load {
 
@@ -13,6 +18,22 @@ bool AssimpFiles::may_open(const std::string& file) const {
     return verdict == NamedFiles::Verdict::readable;
 }
 
+/// The model, without a byte order mark: not all of assimp's readers skip it.
+Assimp::IOStream* AssimpFiles::open_model(const char* mode) {
+    Assimp::IOStream* const stream = DefaultIOSystem::Open(path_.c_str(), mode);
+    if (stream == nullptr) return nullptr;
+    std::string beginning(3, '\0');
+    beginning.resize(stream->Read(beginning.data(), 1, beginning.size()));
+    stream->Seek(0, aiOrigin_SET);
+    if (without_mark(beginning).size() == beginning.size()) return stream;
+    const std::size_t size = stream->FileSize() - beginning.size();
+    auto* const text = new std::uint8_t[size];  // the new stream deletes it
+    stream->Seek(beginning.size(), aiOrigin_SET);
+    const std::size_t read = stream->Read(text, 1, size);
+    Close(stream);
+    return new Assimp::MemoryIOStream(text, read, true);
+}
+
 bool AssimpFiles::Exists(const char* file) const {
     if (file == alias_) return DefaultIOSystem::Exists(path_.c_str());
     return may_open(file);
@@ -20,7 +41,7 @@ bool AssimpFiles::Exists(const char* file) const {
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
     if (!std::string_view(mode).starts_with('r')) return nullptr;
-    if (file == alias_) return DefaultIOSystem::Open(path_.c_str(), mode);
+    if (file == alias_) return open_model(mode);
     return may_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
 }
 

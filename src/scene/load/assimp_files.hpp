@@ -26,6 +26,7 @@ public:
     Assimp::IOStream* Open(const char* file, const char* mode) override;
 
 private:
+    [[nodiscard]] Assimp::IOStream* open_model(const char* mode);
     [[nodiscard]] bool may_open(const std::string& file) const;
 
     std::string alias_, path_;

@@ -21,6 +21,7 @@
 #include "scene/load/assimp_files.hpp"
 #include "scene/load/gltf_extensions.hpp"
 #include "scene/load/input.hpp"
+#include "scene/load/off_colors.hpp"
 #include "scene/load/text.hpp"
 
 namespace sightline::load {
@@ -229,12 +230,16 @@ std::string list_of(const std::set<std::string>& refused) {
 }
 
 /// All bytes of a model; none when they can't be read.
-std::vector<std::byte> bytes_of(const Source& source) {
-    if (source.path.empty()) return {source.bytes.begin(), source.bytes.end()};
+std::string bytes_of(const Source& source) {
+    const auto text_of = [](std::span<const std::byte> bytes) {
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    if (source.path.empty()) return text_of(source.bytes);
     constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max() / 2;
     const Result<InputFile> file = InputFile::open(source.path, kNoLimit);
-    Result<std::vector<std::byte>> bytes = file ? file->read_all() : file.error();
-    return bytes ? std::move(*bytes) : std::vector<std::byte>{};
+    if (!file) return {};
+    const Result<std::vector<std::byte>> bytes = file->read_all();
+    return bytes ? text_of(*bytes) : std::string();
 }
 
 const aiScene* import(Assimp::Importer& importer, const Source& source,
@@ -249,8 +254,9 @@ const aiScene* import(Assimp::Importer& importer, const Source& source,
     importer.SetIOHandler(
         new AssimpFiles(alias, source.path, NamedFiles(source.path, allowed), refused));
     if (!source.path.empty()) return importer.ReadFile(alias, 0);
-    return importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), 0,
-                                       source.format.c_str());
+    const std::string_view bytes =
+        without_mark({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()});
+    return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, source.format.c_str());
 }
 
 }  // namespace
@@ -274,9 +280,7 @@ std::vector<std::string> assimp_extensions() {
 
 std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     if (is_linear(source.format)) {
-        const std::vector<std::byte> file = bytes_of(source);
-        const std::string extension =
-            unsupported_gltf_extension({reinterpret_cast<const char*>(file.data()), file.size()});
+        const std::string extension = unsupported_gltf_extension(bytes_of(source));
         if (!extension.empty()) {
             return fmt::format("it requires the extension {}, which is not supported",
                                one_line(extension));
@@ -295,6 +299,9 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     }
     if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
     Soup soup = soup_of(*scene, source.format);
+    if (source.format == "off" && off_has_face_colors(bytes_of(source))) {
+        soup.notes.emplace_back(kNoFaceColors);
+    }
     if (!refused.empty()) soup.notes.push_back("the file " + list_of(refused));
     return soup;
 }

@@ -22,6 +22,7 @@
 #include "scene/load/input.hpp"
 #include "scene/load/reader.hpp"
 #include "scene/load/scene_file.hpp"
+#include "scene/load/sniff.hpp"
 #include "scene/load/text.hpp"
 
 namespace sightline {
@@ -120,6 +121,28 @@ Error unknown_format(const std::string& name, const std::string& format) {
                     name, what));
 }
 
+/// The error about a file that can't be read and looks like one of another format.
+std::optional<Error> other_format(const Source& source) {
+    constexpr std::size_t kLooked = 4096;
+    std::size_t size = source.bytes.size();
+    const std::span<const std::byte> looked = source.bytes.first(std::min(size, kLooked));
+    std::vector<std::byte> beginning(looked.begin(), looked.end());
+    if (beginning.empty()) {
+        std::error_code error;
+        size = static_cast<std::size_t>(std::filesystem::file_size(source.path, error));
+        const Result<InputFile> file = InputFile::open(source.path, size);
+        if (error || !file) return std::nullopt;
+        Result<std::vector<std::byte>> bytes = file->read_beginning(kLooked);
+        if (bytes) beginning = std::move(*bytes);
+    }
+    const std::string format = sniff_format(text_of(beginning), size);
+    if (!is_other_format(source.format, format)) return std::nullopt;
+    return bad_input(
+        fmt::format("{}: not a readable {} file: it looks like {}; rename it or give "
+                    "--format {}",
+                    source.name, source.format, format, format));
+}
+
 /// Loads one file after another into one scene.
 class Loader {
 public:
@@ -191,7 +214,9 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     if (!bytes) return bytes.error();
     if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
     if (is_scene) {
-        return add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
+        Status added = add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
+        if (added || added.error().kind != ErrorKind::bad_input) return added;
+        return other_format({path, "", format, *bytes, {}}).value_or(added.error());
     }
     Source source{path, file->is_regular() ? path : "", format, {}, options_.allowed_paths};
     if (whole) source.bytes = *bytes;
@@ -203,9 +228,14 @@ Status Loader::add_source(const Source& source, const Placement& placement) {
         !std::ranges::binary_search(assimp_extensions(), source.format)) {
         return unknown_format(source.name, source.format);
     }
+    // assimp reads a file by its content if it does not fit its name.
+    if (!has_own_reader(source.format) && can_sniff(source.format)) {
+        if (std::optional<Error> other = other_format(source)) return *std::move(other);
+    }
     const Result<Soup> soup = read_soup(source, options_);
-    if (!soup) return soup.error();
-    return builder_.append(*soup, placement);
+    const Status added = soup ? builder_.append(*soup, placement) : Status(soup.error());
+    if (added || added.error().kind != ErrorKind::bad_input) return added;
+    return other_format(source).value_or(added.error());
 }
 
 Status Loader::add_scene(std::string_view text, const std::string& name,

@@ -282,7 +282,7 @@ Status PlyReader<Values>::read_faces(const PlyElement& element, bool strips) {
     }
     const bool colored = std::ranges::any_of(
         element.properties, [](const PlyProperty& p) { return !p.count_type && p.name == "red"; });
-    if (colored) soup_.notes.emplace_back("colours of faces are not read");
+    if (colored) soup_.notes.emplace_back(kNoFaceColors);
     if (!strips) mesh_.polygon_sizes.reserve(mesh_.polygon_sizes.size() + element.count);
     const auto add_corner = [&](std::int64_t index) {
         mesh_.corners.push_back(index >= 0 && index < kNone ? static_cast<std::uint32_t>(index)

@@ -1,7 +1,5 @@
 #include "scene/load/sniff.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -22,12 +20,12 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// A binary STL file has no mark, but its size follows from the count in its header.
-bool is_binary_stl(std::string_view bytes) {
+bool is_binary_stl(std::string_view bytes, std::size_t size) {
     constexpr std::size_t kHeader = 84, kFacet = 50;
     if (bytes.size() <= kHeader) return false;
     std::uint32_t facets = 0;
     std::memcpy(&facets, bytes.data() + kHeader - sizeof facets, sizeof facets);
-    return bytes.size() == kHeader + kFacet * std::size_t{facets};
+    return size == kHeader + kFacet * std::size_t{facets};
 }
 
 /// Lines of an OBJ file: a vertex, and before it nothing but comments and other statements.
@@ -62,20 +60,25 @@ std::string format_of_text(std::string_view text) {
 
 }  // namespace
 
-std::string sniff_format(std::string_view bytes) {
+std::string sniff_format(std::string_view bytes, std::size_t size) {
     if (bytes.starts_with("glTF")) return "glb";
     if (bytes.starts_with("PK\x03\x04")) return "3mf";
     if (bytes.starts_with("Kaydara FBX Binary")) return "fbx";
-    if (is_binary_stl(bytes)) return "stl";
+    if (is_binary_stl(bytes, size)) return "stl";
     return format_of_text(trimmed(without_mark(bytes.substr(0, kLooked))));
 }
 
-std::string hint_of_format(std::string_view bytes, std::string_view format) {
-    const std::string other = sniff_format(bytes);
-    const bool same = other == format || (other == "gltf" && format == "glb") ||
-                      (other == "glb" && format == "gltf");
-    if (other.empty() || same) return {};
-    return fmt::format("; it looks like {0} (name it so, or give --format {0})", other);
+bool can_sniff(std::string_view format) {
+    constexpr std::array<std::string_view, 10> kFormats = {"obj", "stl", "ply", "off", "gltf",
+                                                           "glb", "dae", "3mf", "fbx", "json"};
+    return std::ranges::count(kFormats, format) > 0;
+}
+
+bool is_other_format(std::string_view format, std::string_view looks_like) {
+    const auto family = [](std::string_view name) {
+        return name == "glb" || name == "vrm" ? std::string_view("gltf") : name;
+    };
+    return !looks_like.empty() && family(format) != family(looks_like);
 }
 
 }  // namespace sightline::load

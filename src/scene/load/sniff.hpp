@@ -7,11 +7,14 @@
 
 namespace sightline::load {
 
-/// The format (an extension) that the beginning of a file looks like; "" when it looks like none.
-[[nodiscard]] std::string sniff_format(std::string_view bytes);
+/// The format (an extension) that a file of this size and beginning looks like; "" when it looks
+/// like none.
+[[nodiscard]] std::string sniff_format(std::string_view beginning, std::size_t size);
 
-/// What to add to the message about a file that can't be read as `format`: "; it looks like stl
-/// (name it so, or give --format stl)", or nothing.
-[[nodiscard]] std::string hint_of_format(std::string_view bytes, std::string_view format);
+/// Whether sniff_format() knows files of this format.
+[[nodiscard]] bool can_sniff(std::string_view format);
+
+/// Whether a file that looks like the second format can't be of the first one.
+[[nodiscard]] bool is_other_format(std::string_view format, std::string_view looks_like);
 
 }  // namespace sightline::load

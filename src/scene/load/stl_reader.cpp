@@ -292,7 +292,7 @@ Result<std::uint32_t> count_facets(std::string_view bytes, std::uint32_t stated,
     // Some programs don't go back to fill the number in. Others append data of their own.
     constexpr std::uint32_t kNotFilledIn = 0xFFFFFFFF;
     const bool lies = stated == 0 || stated == kNotFilledIn || size % kFacetBytes == 0;
-    const bool other = looks_like_text(bytes) || !sniff_format(bytes).empty();
+    const bool other = looks_like_text(bytes) || !sniff_format(bytes, bytes.size()).empty();
     if (stated > complete && (!lies || complete == 0 || other)) {
         return context.unreadable("stl",
                                   fmt::format("it ends after {} of {} facets", complete, stated));

@@ -25,6 +25,9 @@ namespace sightline::load {
 /// The first line of a message of a foreign library, cleaned and cut to a readable length.
 [[nodiscard]] std::string one_line(std::string_view message);
 
+/// What is noted of a file whose faces have colours.
+inline constexpr std::string_view kNoFaceColors = "colours of faces are not read";
+
 /// What is noted of the textures of a file, by their names; "" when there are none.
 [[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);
 
