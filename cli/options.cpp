@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <system_error>
 
 #include "errors.hpp"
 #include "signals.hpp"
@@ -46,6 +48,10 @@ constexpr std::array kModelRows = {
     Option{"--weld", "FRACTION",
            "join corners on open edges no further apart than this part of their object's size "
            "(default: 2^-20, about 9.5e-7; 0: only equal ones)"},
+    Option{
+        "--allow-path", "DIR",
+        "a folder in which files that a model names may lie, besides the model's own folder, what "
+        "is below it, and the folder textures beside it; may be repeated"},
 };
 
 constexpr std::array kCommonRows = {
@@ -310,6 +316,12 @@ Models read_models(OptionReader& reader, bool required) {
             .number("--weld", {0, kLargestWeld},
                     fmt::format("a part of the size from 0 to {}, as in --weld 1e-5", kLargestWeld))
             .value_or(kWeldTolerance);
+    models.options.allowed_paths = arguments.values("--allow-path");
+    for (const std::string& folder : models.options.allowed_paths) {
+        std::error_code error;
+        if (std::filesystem::is_directory(folder, error)) continue;
+        reader.fail(wrong_use("--allow-path: '{}' is not a folder; name one that exists", folder));
+    }
     if (std::find(models.paths.begin(), models.paths.end(), "") != models.paths.end()) {
         reader.fail(wrong_use("the name of a model is empty; name a file, as in bunny.obj"));
     }

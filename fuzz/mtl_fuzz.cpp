@@ -8,7 +8,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using sightline::fuzz::require;
-    sightline::load::ObjMaterials materials("");
+    const sightline::load::ReadContext context("input", "", 20, std::size_t{1} << 30);
+    sightline::load::ObjMaterials materials(context);
     materials.parse({reinterpret_cast<const char*>(data), size});
     for (const sightline::Material& material : materials.take()) require(material.opacity > 0);
     return 0;

@@ -21,6 +21,9 @@ struct LoadOptions {
     /// Positions on open edges that are no further apart than this part of their object's size are
     /// joined; 0: none but equal ones. See finish_scene().
     double weld = kWeldTolerance;
+    /// Folders in which the files that a model names (buffers, textures, material libraries) may
+    /// lie, besides the model's own folder, what is below it, and the folder `textures` beside it.
+    std::vector<std::string> allowed_paths;
     /// Limits on the parsing of a foreign file.
     double time_limit_seconds = 120;
     std::size_t memory_limit_bytes = std::size_t{8} << 30;

@@ -54,6 +54,9 @@ TEST_F(WrongUse, Numbers) {
     expect_wrong_render({"--crease-angle", "181"}, {"--crease-angle", "'181'"});
     expect_wrong_render({"--weld", "-1e-6"}, {"--weld", "'-1e-6'", "from 0 to 0.01"});
     expect_wrong_render({"--weld", "0.5"}, {"--weld", "'0.5'", "as in --weld 1e-5"});
+    expect_wrong_render({"--allow-path", "nowhere"}, {"--allow-path", "'nowhere' is not a folder"});
+    expect_wrong({"info", "cube.obj", "--allow-path", ".", "--allow-path=cube.obj"},
+                 {"--allow-path", "'cube.obj'"});
     expect_wrong({"draw", "cube.obj", "--weld=much", "-o", "a.svg"}, {"--weld", "'much'"});
     expect_wrong_render({"--opacity", "1.5"}, {"--opacity", "'1.5'"});
     expect_wrong_render({"--opacity", "=1"}, {"--opacity", "'=1'"});

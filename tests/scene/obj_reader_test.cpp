@@ -249,8 +249,8 @@ TEST(ObjReader, ErrorsNameTheLine) {
               "input.obj:5: face refers to vertex 123456789123456789, but there are 4" + way_out);
     EXPECT_EQ(error_of(kSquare + "f 1 2 4294967297\n"),
               "input.obj:5: face refers to vertex 4294967297, but there are 4" + way_out);
-    EXPECT_EQ(error_of(kSquare + "\r\n\r\nf 1//1 2//1 3//1\n"),
-              "input.obj:7: face refers to normal 1, but there are 0" + way_out);
+    EXPECT_EQ(error_of(kSquare + "\r\n\r\nf 1 2 5\n"),
+              "input.obj:7: face refers to vertex 5, but there are 4" + way_out);
     EXPECT_EQ(error_of(kSquare + "f 1 2 3x\n"),
               "input.obj:5: '3x' is not a corner of a face" + way_out);
     EXPECT_EQ(error_of("v 0 0\n"),
@@ -308,6 +308,26 @@ TEST(ObjReader, MemoryAndTimeAreLimited) {
     EXPECT_EQ(refused.error().message,
               "a.obj: reading it takes more than 0 MiB of memory; raise the memory limit if the "
               "file is to be trusted");
+}
+
+TEST(ObjReader, NormalsThatAreNotThereAreDropped) {
+    const std::string normals = "vn 0 0 1\nvn 0 1 0\n";
+    for (const char* wrong : {"3", "0", "-3", "-2000", "2147483648", "-2147483648", "4294967295"}) {
+        const std::string corner = "1//" + std::string(wrong);
+        const Scene scene = loaded(load_text(
+            kSquare + normals + "f " + corner + " 2//1 3//2\nf 1//1 3//2 4//-1\n", "obj"));
+        ASSERT_EQ(scene.triangle_count(), 2u) << wrong;
+        EXPECT_EQ(scene.triangle_normals[0], Corners(kNone)) << wrong;
+        EXPECT_EQ(scene.normals[scene.triangle_normals[1].x], glm::vec3(0, 0, 1)) << wrong;
+        ASSERT_EQ(scene.notes.size(), 1u) << wrong;
+        EXPECT_NE(
+            scene.notes[0].find("normals that are not in the file; their corners have none: 1"),
+            std::string::npos)
+            << scene.notes[0];
+    }
+    const Scene none = loaded(load_text(kSquare + "f 1//1 2//2 3//3\n", "obj"));
+    EXPECT_FALSE(none.objects[0].has_file_normals);
+    EXPECT_EQ(none.notes.size(), 1u);
 }
 
 }  // namespace

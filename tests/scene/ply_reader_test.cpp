@@ -250,5 +250,59 @@ TEST(PlyReader, ARealFileOfStrips) {
     EXPECT_TRUE(igea->objects[0].closed) << "the strips' triangles face alike";
 }
 
+const std::string kTriangleHeader =
+    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+    "element face 1\nproperty list uchar int vertex_indices\n";
+
+std::string ascii_triangle(const std::string& body) {
+    return "ply\nformat ascii 1.0\n" + kTriangleHeader + "end_header\n" + body;
+}
+
+TEST(PlyReader, LinesThatContradictTheHeader) {
+    const std::string right = "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n3 0 1 2\n";
+    EXPECT_EQ(loaded(load_ply(ascii_triangle(right))).triangle_count(), 1u);
+    // Values without regard to lines are read.
+    std::string one_line = right;
+    std::ranges::replace(one_line, '\n', ' ');
+    EXPECT_EQ(loaded(load_ply(ascii_triangle(one_line))).triangle_count(), 1u);
+    const auto error = [](const std::string& body) {
+        return message_of(load_ply(ascii_triangle(body)));
+    };
+    const std::string way_out =
+        " is not the line of values that the header describes; repair the line or export the file "
+        "again";
+    EXPECT_EQ(error("0 0 0 1 2 3 4\n1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n3 0 1 2\n"),
+              "input.ply:13: vertex" + way_out);
+    EXPECT_EQ(error("0 0 0\n1 0 0\n1 1 0\n1 1 1\n0 0 0\n0 0 0\n3 0 1 2\n"),
+              "input.ply:13: vertex" + way_out);
+    EXPECT_EQ(error("0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n3 0 1 2 9\n"),
+              "input.ply:16: face" + way_out);
+}
+
+TEST(PlyReader, ByteOrderMarksAndOddLineEnds) {
+    EXPECT_EQ(loaded(load_ply("\xef\xbb\xbf" +
+                              ascii_triangle("0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n3 0 1 2\n")))
+                  .triangle_count(),
+              1u);
+    for (const char* form : kForms) {
+        std::string file = five_vertices(form).put<std::uint8_t>({3}).put<int>({0, 1, 2}).file(
+            kVertices + "element face 1\nproperty list uchar int vertex_indices\n");
+        file.replace(file.find("end_header\n"), 11, "end_header\r\n");
+        EXPECT_EQ(loaded(load_ply(file)).triangle_count(), 1u) << form;
+    }
+}
+
+TEST(PlyReader, ColoursOfFacesAreNoted) {
+    const Scene scene =
+        loaded(load_ply(five_vertices("ascii").file(
+                            kVertices + "element face 1\nproperty list uchar int vertex_indices\n"
+                                        "property uchar red\nproperty uchar green\nproperty uchar "
+                                        "blue\n") +
+                        "\n3 0 1 2 255 0 0\n"));
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_EQ(scene.notes[0], "input.ply: colours of faces are not read");
+}
+
 }  // namespace
 }  // namespace sightline

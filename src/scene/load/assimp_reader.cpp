@@ -2,44 +2,30 @@
 // off a file's meshes, faces and vertices arrive as they were stored.
 #include "scene/load/assimp_reader.hpp"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
+#include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string_view>
 
+#include "scene/load/assimp_files.hpp"
+#include "scene/load/gltf_extensions.hpp"
+#include "scene/load/input.hpp"
+#include "scene/load/off_colors.hpp"
 #include "scene/load/text.hpp"
 
 namespace sightline::load {
 namespace {
-
-/// Shows assimp a file under a name whose extension is the wanted format, and keeps the paths of
-/// all files that it opens.
-class RenamedFile : public Assimp::DefaultIOSystem {
-public:
-    RenamedFile(std::string alias, std::string path, std::set<std::string>& opened)
-        : alias_(std::move(alias)), path_(std::move(path)), opened_(opened) {}
-    bool Exists(const char* file) const override { return DefaultIOSystem::Exists(real(file)); }
-    Assimp::IOStream* Open(const char* file, const char* mode) override {
-        opened_.emplace(real(file));
-        return DefaultIOSystem::Open(real(file), mode);
-    }
-
-private:
-    [[nodiscard]] const char* real(const char* file) const {
-        return file == alias_ ? path_.c_str() : file;
-    }
-    std::string alias_, path_;
-    std::set<std::string>& opened_;
-};
 
 /// Keeps the last error that assimp logs while it goes on reading.
 class ErrorLog : public Assimp::LogStream {
@@ -117,9 +103,9 @@ std::set<std::string> textures_of(const aiScene& scene) {
 void append_faces(const aiMesh& from, SoupMesh& mesh, std::uint64_t& ignored) {
     mesh.polygon_sizes.reserve(from.mNumFaces);
     mesh.corners.reserve(std::size_t{3} * from.mNumFaces);
-    for (unsigned f = 0; f < from.mNumFaces; ++f) {
+    for (unsigned f = 0; f < from.mNumFaces && from.mFaces != nullptr; ++f) {
         const aiFace& face = from.mFaces[f];
-        if (face.mNumIndices < 3) {
+        if (face.mNumIndices < 3 || face.mIndices == nullptr) {
             ++ignored;
             continue;
         }
@@ -167,13 +153,60 @@ std::string object_name(const aiNode& node, const SoupMesh& mesh) {
 
 void append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
     const glm::dmat4 transform = above * matrix_of(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    // Some readers leave null pointers where they gave up.
+    for (unsigned i = 0; i < node.mNumMeshes && node.mMeshes != nullptr; ++i) {
         const std::uint32_t mesh = node.mMeshes[i];
         if (mesh >= soup.meshes.size()) continue;
         soup.objects.push_back({object_name(node, soup.meshes[mesh]), mesh, transform});
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) {
-        append_nodes(*node.mChildren[i], transform, soup);
+    for (unsigned i = 0; i < node.mNumChildren && node.mChildren != nullptr; ++i) {
+        if (node.mChildren[i] != nullptr) append_nodes(*node.mChildren[i], transform, soup);
+    }
+}
+
+void append_materials(const aiScene& scene, Soup& soup, std::vector<std::uint32_t>& numbers) {
+    std::set<std::string> textures;
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+        const aiMaterial* const material = scene.mMaterials[i];
+        if (material == nullptr || is_invented(*material)) continue;
+        numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
+        soup.materials.push_back(material_of(*material));
+        collect_textures(*material, textures);
+    }
+    if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
+}
+
+/// The up axis that an FBX file states, such as "0,0,1"; y, which all else here has, when it states
+/// none.
+std::string up_axis_of(const aiScene& scene) {
+    int axis = 1, sign = 1;
+    if (scene.mMetaData != nullptr) {
+        scene.mMetaData->Get("UpAxis", axis);
+        scene.mMetaData->Get("UpAxisSign", sign);
+    }
+    const auto at = [&](int i) { return i != axis ? 0 : sign < 0 ? -1 : 1; };
+    return fmt::format("{},{},{}", at(0), at(1), at(2));
+}
+
+/// What the file holds that shapes it and is not read.
+void note_what_is_not_read(const aiScene& scene, Soup& soup) {
+    unsigned skinned = 0, morphed = 0;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        if (scene.mMeshes[i] == nullptr) continue;
+        skinned += scene.mMeshes[i]->HasBones() ? 1 : 0;
+        morphed += scene.mMeshes[i]->mNumAnimMeshes > 0 ? 1 : 0;
+    }
+    if (skinned > 0) {
+        soup.notes.push_back(fmt::format(
+            "bones are not read, so skinned meshes may look wrong: {}; export it posed", skinned));
+    }
+    if (morphed > 0) {
+        soup.notes.push_back(
+            fmt::format("morph targets are not read, so meshes stand without them: {}", morphed));
+    }
+    if (const std::string up = up_axis_of(scene); up != "0,1,0") {
+        soup.notes.push_back(
+            fmt::format("the file says that {0} is upwards, but y is here; give --up {0}", up));
     }
 }
 
@@ -181,37 +214,57 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
     Soup soup;
     soup.srgb_colors = !is_linear(format);
     std::vector<std::uint32_t> numbers(scene.mNumMaterials, kNone);
-    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
-        if (is_invented(*scene.mMaterials[i])) continue;
-        numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
-        soup.materials.push_back(material_of(*scene.mMaterials[i]));
-    }
-    const std::set<std::string> textures = textures_of(scene);
-    if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
+    append_materials(scene, soup, numbers);
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        soup.meshes.emplace_back();
+        if (scene.mMeshes[i] == nullptr) continue;
         const aiMesh& mesh = *scene.mMeshes[i];
-        soup.meshes.push_back(mesh_of(mesh, soup.ignored_primitives));
+        soup.meshes.back() = mesh_of(mesh, soup.ignored_primitives);
         if (mesh.mMaterialIndex < numbers.size()) {
-            if (ignores_alpha(*scene.mMaterials[mesh.mMaterialIndex]))
+            const aiMaterial* const material = scene.mMaterials[mesh.mMaterialIndex];
+            if (material != nullptr && ignores_alpha(*material))
                 for (glm::vec4& color : soup.meshes.back().colors) color.a = 1;
             soup.meshes.back().material = numbers[mesh.mMaterialIndex];
         }
     }
     if (scene.mRootNode != nullptr) append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup);
+    note_what_is_not_read(scene, soup);
     return soup;
 }
 
-const aiScene* import(Assimp::Importer& importer, const Source& source,
-                      std::set<std::string>& opened) {
-    if (source.path.empty()) {
-        return importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), 0,
-                                           source.format.c_str());
-    }
+/// The names of refused files, for a message.
+std::string list_of(const std::set<std::string>& refused) {
+    return fmt::format("'{}'{} {}", one_line(*refused.begin()), refused.size() > 1 ? ", ..." : "",
+                       kOutsideReason);
+}
+
+/// All bytes of a model; none when they can't be read.
+std::string bytes_of(const Source& source) {
+    const auto text_of = [](std::span<const std::byte> bytes) {
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    if (source.path.empty()) return text_of(source.bytes);
+    constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max() / 2;
+    const Result<InputFile> file = InputFile::open(source.path, kNoLimit);
+    if (!file) return {};
+    const Result<std::vector<std::byte>> bytes = file->read_all();
+    return bytes ? text_of(*bytes) : std::string();
+}
+
+const aiScene* import(Assimp::Importer& importer, const Source& source, AssimpFiles::Names& names) {
+    // Where there is nothing to show, assimp would draw the bones.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    const std::vector<std::string> allowed(source.allowed_paths.begin(),
+                                           source.allowed_paths.end());
     const bool named_so = extension_of(source.path) == source.format;
     const std::string alias = named_so ? source.path : source.path + "." + source.format;
     // The importer deletes it.
-    importer.SetIOHandler(new RenamedFile(alias, source.path, opened));
-    return importer.ReadFile(alias, 0);
+    importer.SetIOHandler(
+        new AssimpFiles(alias, source.path, NamedFiles(source.path, allowed), names));
+    if (!source.path.empty()) return importer.ReadFile(alias, 0);
+    const std::string_view bytes =
+        without_mark({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()});
+    return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, source.format.c_str());
 }
 
 }  // namespace
@@ -234,19 +287,35 @@ std::vector<std::string> assimp_extensions() {
 }
 
 std::variant<Soup, std::string> read_with_assimp(const Source& source) {
+    if (is_linear(source.format)) {
+        const std::string extension = unsupported_gltf_extension(bytes_of(source));
+        if (!extension.empty()) {
+            return fmt::format("it requires the extension {}, which is not supported",
+                               one_line(extension));
+        }
+    }
     auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     auto* const errors = new ErrorLog;  // the logger deletes it
     logger->attachStream(errors, Assimp::Logger::Err);
-    std::set<std::string> opened;
-    Assimp::Importer importer;
-    const aiScene* scene = import(importer, source, opened);
-    if (scene == nullptr) return one_line(importer.GetErrorString());
+    // Never destroyed: after some files that were read well, the destructor crashes.
+    auto* const importer = new Assimp::Importer;
+    AssimpFiles::Names names;
+    const aiScene* scene = import(*importer, source, names);
+    const std::set<std::string>& refused = names.refused;
+    if (scene == nullptr) {
+        const std::string why = one_line(importer->GetErrorString());
+        return refused.empty() ? why : fmt::format("{}; {}", why, list_of(refused));
+    }
     if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
     Soup soup = soup_of(*scene, source.format);
-    soup.files.assign(opened.begin(), opened.end());
-    for (const std::string& name : textures_of(*scene)) {
-        if (!source.path.empty()) soup.files.push_back(path_beside(source.path, name));
+    if (source.format == "off" && off_has_face_colors(bytes_of(source))) {
+        soup.notes.emplace_back(kNoFaceColors);
     }
+    if (!refused.empty()) soup.notes.push_back("the file " + list_of(refused));
+    soup.files.assign(names.opened.begin(), names.opened.end());
+    if (!source.path.empty())
+        for (const std::string& name : textures_of(*scene))
+            soup.files.push_back(path_beside(source.path, name));
     return soup;
 }
 

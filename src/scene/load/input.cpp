@@ -2,12 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 namespace sightline::load {
@@ -26,6 +31,46 @@ Error too_large(const std::string& name, std::size_t limit) {
             fmt::format("{}: more than {} MiB; use a smaller model or raise the "
                         "limit on file size",
                         name, limit >> 20)};
+}
+
+/// Whether what statfs() tells is a file system whose files the kernel makes up.
+bool is_of_kernel(const struct statfs& info) {
+    constexpr std::array<unsigned long, 8> kMagics = {
+        PROC_SUPER_MAGIC, SYSFS_MAGIC,        DEBUGFS_MAGIC, TRACEFS_MAGIC,
+        SECURITYFS_MAGIC, CGROUP_SUPER_MAGIC, BPF_FS_MAGIC,  CGROUP2_SUPER_MAGIC};
+    return std::ranges::count(kMagics, static_cast<unsigned long>(info.f_type)) > 0;
+}
+
+/// Whether somebody has a pipe open for writing, or has left something in it.
+bool has_writer(int pipe) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) return true;
+    const Descriptor out(ends[0]), in(ends[1]);
+    // This takes nothing out of the pipe; at its end there is nothing to copy.
+    return tee(pipe, in.get(), 1, SPLICE_F_NONBLOCK) != 0;
+}
+
+/// Waits a moment for somebody to write to a pipe, which was opened without blocking; false when
+/// nobody does. From then on reading blocks.
+bool await_writer(int pipe) {
+    constexpr int kTries = 50;
+    constexpr std::chrono::milliseconds kPause(20);
+    for (int i = 0; !has_writer(pipe); ++i) {
+        if (i == kTries) return false;
+        std::this_thread::sleep_for(kPause);
+    }
+    return fcntl(pipe, F_SETFL, O_RDONLY) == 0;
+}
+
+/// Why a file that is open and is no folder can't be a model; "" when it can.
+std::string_view unfit(int fd, const struct stat& info) {
+    struct statfs system {};
+    if (S_ISREG(info.st_mode)) {
+        const bool of_kernel = fstatfs(fd, &system) == 0 && is_of_kernel(system);
+        return of_kernel ? "it is a file of the kernel; name a file on a disk" : "";
+    }
+    if (!S_ISFIFO(info.st_mode)) return "it is a device; name a file";
+    return await_writer(fd) ? "" : "it is a pipe that nobody writes to; start what writes to it";
 }
 
 /// Reads up to `size` bytes of what is left of a file; there are probably `expected` ones.
@@ -49,6 +94,11 @@ Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::
 
 }  // namespace
 
+bool is_kernel_file(const std::string& path) {
+    struct statfs info {};
+    return statfs(path.c_str(), &info) == 0 && is_of_kernel(info);
+}
+
 Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, std::size_t limit,
                                                std::size_t expected) {
     Result<std::vector<std::byte>> bytes = read_up_to(fd, name, limit + 1, expected);
@@ -57,7 +107,8 @@ Result<std::vector<std::byte>> read_descriptor(int fd, const std::string& name, 
 }
 
 Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
-    Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    // Opening a pipe that nobody writes to would block.
+    Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (descriptor.get() < 0) return refused(path, errno);
     InputFile file(std::move(descriptor), path, limit);
     struct stat info {};
@@ -65,6 +116,9 @@ Result<InputFile> InputFile::open(const std::string& path, std::size_t limit) {
     if (S_ISDIR(info.st_mode)) {
         return Error{ErrorKind::bad_input,
                      fmt::format("{}: it is a folder; name a model file in it", path)};
+    }
+    if (const std::string_view fault = unfit(file.descriptor_.get(), info); !fault.empty()) {
+        return Error{ErrorKind::bad_input, fmt::format("{}: {}", path, fault)};
     }
     file.regular_ = S_ISREG(info.st_mode);
     if (file.regular_) file.size_ = static_cast<std::size_t>(info.st_size);

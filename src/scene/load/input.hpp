@@ -16,11 +16,15 @@ namespace sightline::load {
                                                              std::size_t limit,
                                                              std::size_t expected = 0);
 
+/// Whether the kernel makes up what this file holds, as in /proc and /sys.
+[[nodiscard]] bool is_kernel_file(const std::string& path);
+
 /// A file open for reading. Movable.
 class InputFile {
 public:
-    /// Errors: io when it is missing or may not be read; bad_input when it is a folder, or a
-    /// regular file of more than `limit` bytes.
+    /// Errors: io when it is missing or may not be read; bad_input when it is a folder, a device, a
+    /// file of the kernel, a pipe that nobody writes to, or a regular file of more than `limit`
+    /// bytes.
     [[nodiscard]] static Result<InputFile> open(const std::string& path, std::size_t limit);
 
     [[nodiscard]] bool is_regular() const { return regular_; }

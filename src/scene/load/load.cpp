@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,6 +24,7 @@
 #include "scene/load/input.hpp"
 #include "scene/load/reader.hpp"
 #include "scene/load/scene_file.hpp"
+#include "scene/load/sniff.hpp"
 #include "scene/load/text.hpp"
 
 namespace sightline {
@@ -34,7 +36,9 @@ constexpr std::byte kSoup{0}, kMessage{1};
 
 Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
 
-std::vector<std::byte> read_in_child(const Source& source) {
+/// `fill`: what memory holds that nobody has set; see read_foreign().
+std::vector<std::byte> read_in_child(const Source& source, int fill) {
+    mallopt(M_PERTURB, fill);
     std::variant<Soup, std::string> read = read_with_assimp(source);
     std::vector<std::byte> bytes;
     if (const Soup* soup = std::get_if<Soup>(&read)) {
@@ -58,15 +62,40 @@ bool is_utf16(std::string_view bytes) {
     return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
 }
 
+/// What assimp makes of a file, as bytes from its child process. Some of its readers use memory
+/// that they have not set, so the same file gives another model each time. So nothing that was not
+/// set is left to chance, and a file of moderate size is read twice, with other values there.
+Result<MappedBytes> read_foreign(const Source& source, const LoadOptions& options) {
+    constexpr int kFill = 0x55, kOtherFill = 0xAB;
+    constexpr std::uintmax_t kReadTwice = std::uintmax_t{16} << 20;
+    const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};
+    const auto read = [&](int fill) {
+        return run_contained([&] { return read_in_child(source, fill); }, limits, source.name);
+    };
+    Result<MappedBytes> first = read(kFill);
+    if (!first) return first;
+    std::error_code error;
+    const std::uintmax_t size =
+        source.path.empty() ? source.bytes.size() : std::filesystem::file_size(source.path, error);
+    if (error || size > kReadTwice) return first;
+    const Result<MappedBytes> second = read(kOtherFill);
+    if (!second) return second.error();
+    if (!std::ranges::equal(first->bytes(), second->bytes())) {
+        return bad_input(
+            fmt::format("{}: its reader gives another result each time, so none is "
+                        "right; export it again or convert it to another format",
+                        source.name));
+    }
+    return first;
+}
+
 Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
     if (has_own_reader(source.format) && !is_utf16(text_of(source.bytes))) {
         const ReadContext context(source.name, source.path, options.time_limit_seconds,
-                                  options.memory_limit_bytes);
+                                  options.memory_limit_bytes, options.allowed_paths);
         return read_own_format(source.format, text_of(source.bytes), context);
     }
-    const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};
-    const Result<MappedBytes> mapped =
-        run_contained([&] { return read_in_child(source); }, limits, source.name);
+    const Result<MappedBytes> mapped = read_foreign(source, options);
     if (!mapped) return mapped.error();
     const std::span<const std::byte> bytes = mapped->bytes();
     if (!bytes.empty() && bytes.back() == kMessage) {
@@ -98,6 +127,28 @@ Error unknown_format(const std::string& name, const std::string& format) {
 std::filesystem::path whole_path(const std::string& path) {
     std::error_code ignored;
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+}
+
+/// The error about a file that can't be read and looks like one of another format.
+std::optional<Error> other_format(const Source& source) {
+    constexpr std::size_t kLooked = 4096;
+    std::size_t size = source.bytes.size();
+    const std::span<const std::byte> looked = source.bytes.first(std::min(size, kLooked));
+    std::vector<std::byte> beginning(looked.begin(), looked.end());
+    if (beginning.empty()) {
+        std::error_code error;
+        size = static_cast<std::size_t>(std::filesystem::file_size(source.path, error));
+        const Result<InputFile> file = InputFile::open(source.path, size);
+        if (error || !file) return std::nullopt;
+        Result<std::vector<std::byte>> bytes = file->read_beginning(kLooked);
+        if (bytes) beginning = std::move(*bytes);
+    }
+    const std::string format = sniff_format(text_of(beginning), size);
+    if (!is_other_format(source.format, format)) return std::nullopt;
+    return bad_input(
+        fmt::format("{}: not a readable {} file: it looks like {}; rename it or give "
+                    "--format {}",
+                    source.name, source.format, format, format));
 }
 
 /// Loads one file after another into one scene.
@@ -167,7 +218,7 @@ Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& na
                          const std::string& format) {
     if (bytes.empty()) return bad_input(fmt::format("{}: it is empty; give it a model", name));
     if (format == "json") return add_scene(text_of(bytes), name, {});
-    return add_source({name, "", format, bytes}, placement_of(name));
+    return add_source({name, "", format, bytes, options_.allowed_paths}, placement_of(name));
 }
 
 Status Loader::add_file(const std::string& path, const std::string& format,
@@ -182,9 +233,11 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     if (!bytes) return bytes.error();
     if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
     if (is_scene) {
-        return add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
+        Status added = add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
+        if (added || added.error().kind != ErrorKind::bad_input) return added;
+        return other_format({path, "", format, *bytes, {}}).value_or(added.error());
     }
-    Source source{path, file->is_regular() ? path : "", format, {}};
+    Source source{path, file->is_regular() ? path : "", format, {}, options_.allowed_paths};
     if (whole) source.bytes = *bytes;
     return add_source(source, placement);
 }
@@ -194,12 +247,18 @@ Status Loader::add_source(const Source& source, const Placement& placement) {
         !std::ranges::binary_search(assimp_extensions(), source.format)) {
         return unknown_format(source.name, source.format);
     }
-    const Result<Soup> soup = read_soup(source, options_);
-    if (!soup) return soup.error();
-    for (const std::string& file : soup->files) {
-        if (Status free = check_input(file, source.name); !free) return free;
+    // assimp reads a file by its content if it does not fit its name.
+    if (!has_own_reader(source.format) && can_sniff(source.format)) {
+        if (std::optional<Error> other = other_format(source)) return *std::move(other);
     }
-    return builder_.append(*soup, placement);
+    const Result<Soup> soup = read_soup(source, options_);
+    if (soup) {
+        for (const std::string& file : soup->files)
+            if (Status free = check_input(file, source.name); !free) return free;
+    }
+    const Status added = soup ? builder_.append(*soup, placement) : Status(soup.error());
+    if (added || added.error().kind != ErrorKind::bad_input) return added;
+    return other_format(source).value_or(added.error());
 }
 
 Status Loader::check_input(const std::string& path, const std::string& model) {

@@ -12,7 +12,6 @@ namespace sightline::load {
 namespace {
 
 constexpr std::int64_t kLargestIndex = 0x7fffffff;
-constexpr std::uint32_t kOutOfRange = 0x80000000u;  // files have fewer vertices
 
 class ChunkParser {
 public:
@@ -64,7 +63,8 @@ private:
     template <class Real>
     std::size_t parse_numbers(std::array<Real, 7>& numbers);
     bool parse_reference(bool& has_normal);
-    bool add_index(ObjIndices& indices, std::int64_t index, bool is_normal);
+    bool add_vertex(std::int64_t index);
+    static void add_index(ObjIndices& indices, std::int64_t index, std::size_t here);
     [[nodiscard]] std::uint64_t count_words();
 
     const char* p_;
@@ -175,34 +175,36 @@ void ChunkParser::parse_normal() {
     chunk_.normals.emplace_back(n[0], n[1], n[2]);
 }
 
-/// Appends an index; false and a fault when it is certainly wrong.
-bool ChunkParser::add_index(ObjIndices& indices, std::int64_t index, bool is_normal) {
-    const char* const what = is_normal ? "normal" : "vertex";
-    if (index == 0) {
-        fail(fmt::format("face refers to {} 0, but they are counted from 1", what));
-        return false;
-    }
-    if (counts_ != nullptr) {
-        const std::size_t before = is_normal ? counts_->normals_before + chunk_.normals.size()
-                                             : counts_->positions_before + chunk_.positions.size();
-        const std::size_t all = is_normal ? counts_->normals : counts_->positions;
-        if (index > 0 ? static_cast<std::uint64_t>(index) > all
-                      : static_cast<std::uint64_t>(-index) > before) {
-            fail(fmt::format("face refers to {} {}, but there are {}{}", what, index,
-                             index > 0 ? all : before, index > 0 ? "" : " before it"));
-            return false;
-        }
-    }
-    if (index > kLargestIndex || index < -kLargestIndex) {
-        indices.values.push_back(kOutOfRange);
+/// Appends an index, where `here` vertices or normals of this chunk stand before it.
+void ChunkParser::add_index(ObjIndices& indices, std::int64_t index, std::size_t here) {
+    if (index > kLargestIndex || index < -kLargestIndex || index == 0) {
+        indices.values.push_back(kObjOutOfRange);
     } else if (index > 0) {
         indices.values.push_back(static_cast<std::uint32_t>(index - 1));
     } else {
-        const std::size_t here = is_normal ? chunk_.normals.size() : chunk_.positions.size();
         indices.relative.push_back(indices.values.size());
         indices.values.push_back(
             static_cast<std::uint32_t>(static_cast<std::int64_t>(here) + index));
     }
+}
+
+/// Appends the vertex of a corner; false and a fault when it is certainly wrong.
+bool ChunkParser::add_vertex(std::int64_t index) {
+    if (index == 0) {
+        fail("face refers to vertex 0, but they are counted from 1");
+        return false;
+    }
+    if (counts_ != nullptr) {
+        const std::size_t before = counts_->positions_before + chunk_.positions.size();
+        const std::size_t all = counts_->positions;
+        if (index > 0 ? static_cast<std::uint64_t>(index) > all
+                      : static_cast<std::uint64_t>(-index) > before) {
+            fail(fmt::format("face refers to vertex {}, but there are {}{}", index,
+                             index > 0 ? all : before, index > 0 ? "" : " before it"));
+            return false;
+        }
+    }
+    add_index(chunk_.corners, index, chunk_.positions.size());
     return true;
 }
 
@@ -223,10 +225,10 @@ bool ChunkParser::parse_reference(bool& has_normal) {
         fail(fmt::format("'{}' is not a corner of a face", word()));
         return false;
     }
-    if (!add_index(chunk_.corners, vertex, false)) return false;
+    if (!add_vertex(vertex)) return false;
     if (has_normal) {
         chunk_.normal_corners.values.resize(chunk_.corners.values.size() - 1, kNone);
-        if (!add_index(chunk_.normal_corners, normal, true)) return false;
+        add_index(chunk_.normal_corners, normal, chunk_.normals.size());
     } else if (!chunk_.normal_corners.values.empty()) {
         chunk_.normal_corners.values.push_back(kNone);
     }

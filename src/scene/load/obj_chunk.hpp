@@ -27,6 +27,9 @@ struct ObjFault {
     std::string what;
 };
 
+/// Stands for an index that no vertex or normal can have.
+inline constexpr std::uint32_t kObjOutOfRange = 0x80000000u;  // files have fewer vertices
+
 /// Indices in a file count from 1, or from the latest vertex back when negative.
 struct ObjIndices {
     std::vector<std::uint32_t> values;  ///< from 0; kNone: the corner has none
@@ -46,12 +49,12 @@ struct ObjChunk {
     std::optional<ObjFault> fault;
 };
 
-/// How many vertices and normals stand before a chunk, and in the whole file.
+/// How many vertices and normals stand before a chunk, and how many vertices in the whole file.
 struct ObjCounts {
-    std::size_t positions_before = 0, normals_before = 0, positions = 0, normals = 0;
+    std::size_t positions_before = 0, normals_before = 0, positions = 0;
 };
 
-/// Parses a chunk up to its first fault. With `counts` given, indices out of range are faults too.
+/// Parses a chunk up to its first fault. With `counts` given, vertices out of range are faults too.
 /// Precondition: the text is empty or ends with '\n'.
 [[nodiscard]] ObjChunk parse_obj_chunk(std::string_view text, const ObjCounts* counts = nullptr);
 

@@ -64,49 +64,89 @@ std::string_view last_word(std::string_view line) {
 
 }  // namespace
 
-void ObjMaterials::load(std::string_view names) {
-    if (names.empty() || load_file(names)) return;
+Status ObjMaterials::load(std::string_view names) {
+    if (names.empty() || !lines_.emplace(names).second) return success();
+    if (context_.path().empty()) {
+        note(names, Outcome::missing);
+    } else if (const Outcome whole = load_named(names); whole != Outcome::read) {
+        if (load_words(names) != Outcome::read) {
+            const std::string own = stem_of(context_.path()) + ".mtl";
+            if (load_named(own) != Outcome::read || whole == Outcome::outside) note(names, whole);
+        }
+    }
+    return context_.check(bytes_ + materials_.size() * sizeof(Material));
+}
+
+/// Reads the files that a line names if it is several; whether one of them is there.
+ObjMaterials::Outcome ObjMaterials::load_words(std::string_view names) {
+    if (names.find_first_of(" \t") == std::string_view::npos) return Outcome::missing;
+    std::map<std::string, Outcome> not_read;
     bool found = false;
-    std::set<std::string> missing;
     for (std::string_view rest = names; !rest.empty();) {
         const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-        if (end > 0 && end < names.size()) {
-            const bool here = load_file(rest.substr(0, end));
-            if (!here) missing.emplace(rest.substr(0, end));
-            found = found || here;
+        if (end > 0) {
+            const Outcome outcome = load_named(rest.substr(0, end));
+            if (outcome == Outcome::read) {
+                found = true;
+            } else {
+                not_read.emplace(rest.substr(0, end), outcome);
+            }
         }
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    if (found) {
-        missing_.merge(missing);
-    } else if (!load_file(std::filesystem::path(path_).stem().string() + ".mtl")) {
-        missing_.emplace(names);
-    }
+    if (!found) return Outcome::missing;
+    for (const auto& [name, outcome] : not_read) note(name, outcome);
+    return Outcome::read;
 }
 
-bool ObjMaterials::load_file(std::string_view name) {
-    if (path_.empty()) return false;
+/// Reads a file by its name as it stands, as other systems mean it, or beside the model when it
+/// lies nowhere else: other people's folders are not here.
+ObjMaterials::Outcome ObjMaterials::load_named(std::string_view name) {
     std::string portable(name);
     std::ranges::replace(portable, '\\', '/');
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    for (const std::string_view candidate : {name, std::string_view(portable)}) {
-        const std::filesystem::path file = folder / candidate;
-        std::error_code ignored;
-        // Nothing that could block, such as a pipe.
-        if (!std::filesystem::is_regular_file(file, ignored)) continue;
-        const Result<InputFile> input = InputFile::open(file.string(), kLargestFile);
-        if (!input) continue;
-        const Result<std::vector<std::byte>> bytes = input->read_all();
-        if (!bytes) continue;
-        libraries_.insert(file.string());
-        parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-        return true;
+    const std::filesystem::path folder = std::filesystem::path(context_.path()).parent_path();
+    Outcome outcome = Outcome::missing;
+    for (const std::string_view candidate :
+         {name, std::string_view(portable), last_component(portable)}) {
+        if (candidate.empty()) continue;
+        const Outcome here = load_file(folder / candidate);
+        if (here == Outcome::read) return here;
+        if (here != Outcome::missing) outcome = here;
     }
-    return false;
+    return outcome;
+}
+
+ObjMaterials::Outcome ObjMaterials::load_file(const std::filesystem::path& file) {
+    switch (context_.named_files().judge(file)) {
+        case NamedFiles::Verdict::missing:
+            return Outcome::missing;
+        case NamedFiles::Verdict::outside:
+            return Outcome::outside;
+        case NamedFiles::Verdict::special:
+            return Outcome::unreadable;
+        case NamedFiles::Verdict::readable:
+            break;
+    }
+    std::error_code error;
+    const std::string real = std::filesystem::canonical(file, error).string();
+    if (error) return Outcome::missing;
+    if (!files_.insert(real).second) return Outcome::read;
+    const Result<InputFile> input = InputFile::open(real, kLargestFile);
+    if (!input) return Outcome::unreadable;
+    const Result<std::vector<std::byte>> bytes = input->read_all();
+    if (!bytes) return Outcome::unreadable;
+    bytes_ += bytes->size();
+    parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    return Outcome::read;
+}
+
+void ObjMaterials::note(std::string_view name, Outcome outcome) {
+    constexpr std::size_t kMostNoted = 100;
+    if (not_read_.size() < kMostNoted) not_read_.emplace(name, outcome);
 }
 
 void ObjMaterials::parse(std::string_view text) {
-    const std::string lines = std::string(text) + '\n';
+    const std::string lines = std::string(without_mark(text)) + '\n';
     std::uint32_t current = kNone;
     for (const char *p = lines.data(), *const end = p + lines.size(); p < end;) {
         p = skip_blanks(p);
@@ -114,6 +154,7 @@ void ObjMaterials::parse(std::string_view text) {
             current = use(rest_of_line(p + 6));
         } else if (current != kNone) {
             apply_line(p, materials_[current]);
+            if (starts_with_word(p, "map_kd")) textured_[current] = true;
             if (names_texture(p)) textures_.emplace(last_word(rest_of_line(skip_word(p))));
         }
         p = skip_to_line_end(p) + 1;
@@ -128,32 +169,47 @@ std::uint32_t ObjMaterials::use(std::string_view name) {
     material.name = name;
     material.base_color = glm::vec3(kDefaultDiffuse);
     materials_.push_back(std::move(material));
+    textured_.push_back(false);
     numbers_.emplace(name, number);
     return number;
 }
 
+std::string_view ObjMaterials::reason(Outcome outcome) const {
+    if (context_.path().empty()) return "can't be read, as the model comes without a folder";
+    switch (outcome) {
+        case Outcome::outside:
+            return kOutsideReason;
+        case Outcome::unreadable:
+            return "is not a file of at most 64 MiB that may be read";
+        default:
+            return "is missing";
+    }
+}
+
 std::vector<std::string> ObjMaterials::notes() const {
     std::vector<std::string> notes;
-    for (const std::string& name : missing_) {
+    for (const auto& [name, outcome] : not_read_) {
         notes.push_back(fmt::format("the material library '{}' {}; its materials are grey",
-                                    one_line(name),
-                                    path_.empty() ? "can't be read, as the model comes without a "
-                                                    "folder"
-                                                  : "is missing"));
+                                    one_line(name), reason(outcome)));
     }
     if (!textures_.empty()) notes.push_back(note_of_textures(textures_));
     return notes;
 }
 
 std::vector<std::string> ObjMaterials::files() const {
-    std::vector<std::string> files(libraries_.begin(), libraries_.end());
-    for (const std::string& name : textures_) files.push_back(path_beside(path_, name));
+    std::vector<std::string> files(files_.begin(), files_.end());
+    for (const std::string& name : textures_)
+        files.push_back(path_beside(std::string(context_.path()), name));
     return files;
 }
 
 std::vector<Material> ObjMaterials::take() {
-    for (Material& material : materials_) {
+    for (std::size_t i = 0; i < materials_.size(); ++i) {
+        Material& material = materials_[i];
         if (!(material.opacity > 0)) material.opacity = 1;
+        if (textured_[i] && material.base_color == glm::vec3(0)) {
+            material.base_color = glm::vec3(kDefaultDiffuse);
+        }
     }
     return std::move(materials_);
 }

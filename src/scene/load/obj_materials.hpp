@@ -2,24 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/load/reader.hpp"
 #include "sightline/scene.hpp"
 
 namespace sightline::load {
 
 class ObjMaterials {
 public:
-    /// `path` is the OBJ file's, "" when it is in memory: then no MTL file is read.
-    explicit ObjMaterials(std::string path) : path_(std::move(path)) {}
+    /// No MTL file is read for an OBJ file in memory.
+    explicit ObjMaterials(const ReadContext& context) : context_(context) {}
 
     /// Reads the files that a mtllib line names: one name with spaces, else several without, else
-    /// the OBJ file's own name with the extension mtl. Those that are missing are noted.
-    void load(std::string_view names);
+    /// the OBJ file's own name with the extension mtl. A file is read once, however often it is
+    /// named. Those that are missing or not allowed are noted. Errors: the limits on reading.
+    [[nodiscard]] Status load(std::string_view names);
 
     /// Takes the definitions (newmtl, Kd, d, Tr) of an MTL file; what can't be read is skipped. A
     /// name that is known already gets the new values.
@@ -31,7 +34,8 @@ public:
     [[nodiscard]] const std::string& name(std::uint32_t material) const {
         return materials_[material].name;
     }
-    /// All of them, in order of definition or first use. An opacity of 0 has become 1.
+    /// All of them, in order of definition or first use. An opacity of 0 has become 1, and black
+    /// grey where a texture was to give the colour.
     [[nodiscard]] std::vector<Material> take();
     /// Paths of the material libraries that were read and of the textures that they name.
     [[nodiscard]] std::vector<std::string> files() const;
@@ -39,12 +43,23 @@ public:
     [[nodiscard]] std::vector<std::string> notes() const;
 
 private:
-    bool load_file(std::string_view name);
+    enum class Outcome { read, missing, outside, unreadable };
 
-    std::string path_;
+    Outcome load_named(std::string_view name);
+    Outcome load_file(const std::filesystem::path& file);
+    Outcome load_words(std::string_view names);
+    void note(std::string_view name, Outcome outcome);
+    [[nodiscard]] std::string_view reason(Outcome outcome) const;
+
+    const ReadContext& context_;
     std::vector<Material> materials_;
+    std::vector<bool> textured_;  ///< whether a material has a texture for its colour
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
-    std::set<std::string> missing_, textures_, libraries_;
+    std::set<std::string, std::less<>> lines_;  ///< what mtllib lines have named so far
+    std::set<std::string> files_;               ///< MTL files that were read, without links
+    std::uint64_t bytes_ = 0;                   ///< in those
+    std::map<std::string, Outcome> not_read_;
+    std::set<std::string> textures_;
 };
 
 }  // namespace sightline::load

@@ -15,7 +15,7 @@
 
 #include "scene/load/obj_chunk.hpp"
 #include "scene/load/obj_materials.hpp"
-#include "scene/load/scan.hpp"
+#include "scene/load/text.hpp"
 
 namespace sightline::load {
 namespace {
@@ -51,14 +51,21 @@ std::vector<std::string_view> cut(std::string_view text) {
     return pieces;
 }
 
-/// Makes indices count from the start of the file; false when one is out of range.
-bool resolve(ObjIndices& indices, std::size_t before, std::size_t count, bool may_be_missing) {
+/// Makes indices count from the start of the file; how many are out of range. These become
+/// kOutOfRange, whatever they were.
+std::size_t resolve(ObjIndices& indices, std::size_t before, std::size_t count) {
     for (const std::size_t place : indices.relative) {
-        indices.values[place] += static_cast<std::uint32_t>(before);
+        std::uint32_t& index = indices.values[place];
+        index += static_cast<std::uint32_t>(before);
+        if (index >= count) index = kObjOutOfRange;
     }
-    return std::ranges::all_of(indices.values, [&](std::uint32_t index) {
-        return index < count || (may_be_missing && index == kNone);
-    });
+    std::size_t wrong = 0;
+    for (std::uint32_t& index : indices.values) {
+        if (index < count || index == kNone) continue;
+        index = kObjOutOfRange;
+        ++wrong;
+    }
+    return wrong;
 }
 
 template <class T>
@@ -78,7 +85,7 @@ struct Run {
 class ObjReader {
 public:
     ObjReader(std::string_view text, const ReadContext& context)
-        : text_(text), context_(context), materials_(context.path()) {}
+        : text_(text), context_(context), materials_(context) {}
 
     [[nodiscard]] Result<Soup> read();
 
@@ -87,7 +94,7 @@ private:
     [[nodiscard]] Status resolve_indices();
     [[nodiscard]] Error fault_at(const ObjFault& fault) const;
     void join_chunks();
-    void find_runs();
+    [[nodiscard]] Status find_runs();
     void make_meshes();
     [[nodiscard]] SoupMesh part(const Run& run, std::size_t first_corner);
 
@@ -135,15 +142,24 @@ Status ObjReader::resolve_indices() {
         return context_.unreadable("obj", "more than 2,147,483,647 vertices or normals");
     }
     std::vector<std::uint8_t> wrong(chunks_.size());
+    std::atomic<std::size_t> missing_normals{0};
     tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
         counts_[i].positions = counts.positions_before;
-        counts_[i].normals = counts.normals_before;
         ObjChunk& chunk = chunks_[i];
-        const bool right =
-            resolve(chunk.corners, counts_[i].positions_before, counts_[i].positions, false) &&
-            resolve(chunk.normal_corners, counts_[i].normals_before, counts_[i].normals, true);
-        wrong[i] = right ? 0 : 1;
+        wrong[i] =
+            resolve(chunk.corners, counts_[i].positions_before, counts_[i].positions) > 0 ? 1 : 0;
+        const std::size_t missing =
+            resolve(chunk.normal_corners, counts_[i].normals_before, counts.normals_before);
+        if (missing == 0) return;
+        missing_normals += missing;
+        std::ranges::replace(chunk.normal_corners.values, kObjOutOfRange, kNone);
     });
+    if (missing_normals > 0) {
+        soup_.notes.push_back(
+            fmt::format("faces refer to normals that are not in the file; their corners have none: "
+                        "{}",
+                        missing_normals.load()));
+    }
     const auto first = std::ranges::find(wrong, std::uint8_t{1});
     if (first == wrong.end()) return success();
     const auto i = static_cast<std::size_t>(first - wrong.begin());
@@ -180,7 +196,7 @@ void ObjReader::join_chunks() {
 }
 
 /// Follows the lines o, g, usemtl and mtllib. A name that is current already begins nothing new.
-void ObjReader::find_runs() {
+Status ObjReader::find_runs() {
     Run run{0, 0, {}, kNone, true};
     std::string_view group;
     const auto end_run = [&](std::size_t polygon) {
@@ -200,7 +216,9 @@ void ObjReader::find_runs() {
     for (const ObjChunk& chunk : chunks_) {
         for (const auto& [kind, polygon, name] : chunk.events) {
             if (kind == ObjEvent::Kind::material_file) {
-                materials_.load(name);
+                if (Status within_limits = materials_.load(name); !within_limits) {
+                    return within_limits;
+                }
             } else if (kind == ObjEvent::Kind::use_material) {
                 const std::uint32_t material = materials_.use(name);
                 if (material == run.material) continue;
@@ -217,6 +235,7 @@ void ObjReader::find_runs() {
         before += chunk.polygon_sizes.size();
     }
     end_run(before);
+    return success();
 }
 
 /// The polygons of a run on vertices of their own, in order of their first use.
@@ -278,11 +297,12 @@ void ObjReader::make_meshes() {
 Result<Soup> ObjReader::read() {
     if (Status parsed = parse(); !parsed) return parsed.error();
     if (Status resolved = resolve_indices(); !resolved) return resolved.error();
-    find_runs();
+    if (Status found = find_runs(); !found) return found.error();
     join_chunks();
     make_meshes();
     soup_.materials = materials_.take();
-    soup_.notes = materials_.notes();
+    const std::vector<std::string> notes = materials_.notes();
+    soup_.notes.insert(soup_.notes.end(), notes.begin(), notes.end());
     soup_.files = materials_.files();
     if (Status in_time = context_.check(0); !in_time) return in_time.error();
     return std::move(soup_);
@@ -291,8 +311,7 @@ Result<Soup> ObjReader::read() {
 }  // namespace
 
 Result<Soup> read_obj(std::string_view text, const ReadContext& context) {
-    constexpr std::string_view kMark = "\xef\xbb\xbf";
-    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    text = without_mark(text);
     if (text.ends_with('\n')) return ObjReader(text, context).read();
     const std::string ended = std::string(text) + '\n';  // every scan ends at a line end
     return ObjReader(ended, context).read();

@@ -108,27 +108,29 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, const ReadContext& co
                                  "format",
                                  context.name())};
     }
-    // The lines of a header end alike; a file's binary part may begin with any byte.
-    std::string_view line_end = bytes.substr(first_end, 1);
-    if (bytes.substr(first_end).starts_with("\r\n")) line_end = bytes.substr(first_end, 2);
+    // A line ends with LF, whatever others end with, and maybe CR before it; or, in old files, with
+    // CR alone. A file's binary part may begin with any byte.
+    const std::size_t feed = bytes.find('\n');
+    const bool feeds = bytes[first_end] == '\n' || feed == first_end + 1;
+    const char line_end = feeds ? '\n' : '\r';
     PlyHeader header;
-    std::size_t start = first_end + line_end.size();
+    std::size_t start = (feeds ? feed : first_end) + 1;
     while (true) {
         const std::size_t end = bytes.find(line_end, start);
-        const std::vector<std::string_view> words =
-            words_of(bytes.substr(start, std::min(end, bytes.size()) - start));
+        std::string_view line = bytes.substr(start, std::min(end, bytes.size()) - start);
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        const std::vector<std::string_view> words = words_of(line);
         const bool last = words.size() == 1 && words[0] == "end_header";
-        header.size = end == std::string_view::npos ? bytes.size() : end + line_end.size();
+        header.size = end == std::string_view::npos ? bytes.size() : end + 1;
         if (last) return header;
         if (end == std::string_view::npos) {
             return context.unreadable("ply", "it ends within its header");
         }
         if (!take_line(words, header)) {
             return context.at_line(bytes, start,
-                                   fmt::format("'{}' is no line of a PLY header",
-                                               one_line(bytes.substr(start, end - start))));
+                                   fmt::format("'{}' is no line of a PLY header", one_line(line)));
         }
-        start = end + line_end.size();
+        start = end + 1;
     }
 }
 

@@ -55,6 +55,10 @@ private:
     /// An error about face `index`: its line in a text, its number in a binary file.
     [[nodiscard]] Error fault(const PlyElement& element, std::uint64_t index,
                               std::string_view what) const;
+    /// The error about a line that doesn't hold what the header says.
+    [[nodiscard]] Error wrong_line(const PlyElement& element, std::uint64_t index) const {
+        return fault(element, index, "is not the line of values that the header describes");
+    }
     /// Why a value could not be read.
     [[nodiscard]] Error failure(const PlyElement& element, std::uint64_t index);
     [[nodiscard]] std::optional<Error> check_indices(const PlyElement& element, std::uint64_t index,
@@ -125,11 +129,13 @@ bool PlyReader<Values>::skip_list(Values& values, const PlyProperty& property) {
 template <class Values>
 Status PlyReader<Values>::skip_element(const PlyElement& element) {
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+        values_.begin_record();
         for (const PlyProperty& property : element.properties) {
             const bool skipped =
                 property.count_type ? skip_list(values_, property) : values_.skip(property.type, 1);
             if (!skipped) return failure(element, i);
         }
+        if (!values_.ends_record()) return wrong_line(element, i);
     }
     return success();
 }
@@ -202,7 +208,9 @@ Status PlyReader<Values>::read_vertices(const PlyElement& element) {
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
+        values_.begin_record();
         if (!read_vertex(values_, plan, i)) return failure(element, i);
+        if (!values_.ends_record()) return wrong_line(element, i);
     }
     return success();
 }
@@ -272,6 +280,9 @@ Status PlyReader<Values>::read_faces(const PlyElement& element, bool strips) {
         return context_.unreadable("ply", fmt::format("its element '{}' has no list vertex_indices",
                                                       one_line(element.name)));
     }
+    const bool colored = std::ranges::any_of(
+        element.properties, [](const PlyProperty& p) { return !p.count_type && p.name == "red"; });
+    if (colored) soup_.notes.emplace_back(kNoFaceColors);
     if (!strips) mesh_.polygon_sizes.reserve(mesh_.polygon_sizes.size() + element.count);
     const auto add_corner = [&](std::int64_t index) {
         mesh_.corners.push_back(index >= 0 && index < kNone ? static_cast<std::uint32_t>(index)
@@ -280,6 +291,7 @@ Status PlyReader<Values>::read_faces(const PlyElement& element, bool strips) {
     const auto add_to_strip = [&](std::int64_t index) { strip_.push_back(index); };
     for (std::uint64_t i = 0; i < element.count; ++i) {
         const std::size_t first_corner = mesh_.corners.size();
+        values_.begin_record();
         for (auto property = element.properties.begin(); property != element.properties.end();
              ++property) {
             std::uint64_t length = 0;
@@ -305,6 +317,7 @@ Status PlyReader<Values>::read_faces(const PlyElement& element, bool strips) {
             }
             if (!read) return failure(element, i);
         }
+        if (!values_.ends_record()) return wrong_line(element, i);
         if (strips) {
             append_strips();
         } else {
@@ -331,10 +344,13 @@ Status PlyReader<Values>::read_element(const PlyElement& element) {
 template <class Values>
 Result<Soup> PlyReader<Values>::read() {
     bool drawn = false;
+    std::uint64_t records = 0;
     for (const PlyElement& element : header_.elements) {
+        if (!element.properties.empty()) records += std::min<std::uint64_t>(element.count, kNone);
         if (element.name == "vertex") vertices_ = element.count;
         drawn = drawn || element.name == "face" || element.name == "tristrips";
     }
+    values_.expect_records(records);
     for (const PlyElement& element : header_.elements) {
         if (Status read = read_element(element); !read) return read.error();
     }
@@ -351,6 +367,7 @@ Result<Soup> PlyReader<Values>::read() {
 }  // namespace
 
 Result<Soup> read_ply(std::string_view bytes, const ReadContext& context) {
+    bytes = without_mark(bytes);
     const Result<PlyHeader> header = parse_ply_header(bytes, context);
     if (!header) return header.error();
     const std::string_view body = bytes.substr(header->size);

@@ -33,6 +33,27 @@ public:
     explicit PlyText(std::string_view text) : p_(text.data()), end_(p_ + text.size()) {}
 
     [[nodiscard]] const char* position() const { return p_; }
+    /// The body holds so many records. If it has as many lines at least, each stands in one.
+    void expect_records(std::uint64_t records) {
+        std::uint64_t lines = 0;
+        for (const char* p = p_; p < end_; ++lines) {
+            while (p < end_ && (is_blank(*p) || is_line_end(*p))) ++p;
+            if (p == end_) break;
+            p = skip_to_line_end(p);
+        }
+        by_lines_ = lines >= records;
+    }
+    void begin_record() {
+        if (!by_lines_ || !skip_space()) return;
+        record_ = p_;
+        line_end_ = skip_to_line_end(p_);
+    }
+    /// Whether the record just read is all that stands in its line; if not, back to its start.
+    [[nodiscard]] bool ends_record() {
+        if (!by_lines_ || skip_blanks(p_) == line_end_) return true;
+        p_ = record_;
+        return false;
+    }
     /// Moves on to the next value; false when there is none.
     bool skip_space() {
         while (p_ < end_ && (is_blank(*p_) || is_line_end(*p_))) ++p_;
@@ -81,6 +102,9 @@ private:
     }
     const char* p_;
     const char* end_;
+    const char* record_ = nullptr;  ///< the one at hand
+    const char* line_end_ = nullptr;
+    bool by_lines_ = false;
 };
 
 /// `kSwap`: the file's byte order is not the machine's.
@@ -92,6 +116,10 @@ public:
     explicit PlyBinary(std::string_view bytes) : p_(bytes.data()), end_(p_ + bytes.size()) {}
 
     [[nodiscard]] const char* position() const { return p_; }
+    // See PlyText.
+    static void expect_records(std::uint64_t) {}
+    static void begin_record() {}
+    [[nodiscard]] static bool ends_record() { return true; }
     [[nodiscard]] bool has_room(std::uint64_t values, PlyType type) const {
         return values <= static_cast<std::uint64_t>(end_ - p_) / size_of(type);
     }

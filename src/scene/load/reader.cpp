@@ -10,9 +10,10 @@
 namespace sightline::load {
 
 ReadContext::ReadContext(std::string name, std::string path, double seconds,
-                         std::size_t memory_bytes)
+                         std::size_t memory_bytes, const std::vector<std::string>& allowed_paths)
     : name_(std::move(name)),
       path_(std::move(path)),
+      named_files_(path_, allowed_paths),
       seconds_(seconds),
       memory_bytes_(memory_bytes),
       start_(std::chrono::steady_clock::now()) {}

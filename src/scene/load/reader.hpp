@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "scene/load/named_files.hpp"
 #include "scene/load/soup.hpp"
 #include "sightline/error.hpp"
 
@@ -17,11 +19,13 @@ namespace sightline::load {
 /// The file at hand and the limits on reading it.
 class ReadContext {
 public:
-    /// `path` is "" for a model in memory.
-    ReadContext(std::string name, std::string path, double seconds, std::size_t memory_bytes);
+    /// `path` is "" for a model in memory. `allowed_paths`: see LoadOptions.
+    ReadContext(std::string name, std::string path, double seconds, std::size_t memory_bytes,
+                const std::vector<std::string>& allowed_paths = {});
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] const NamedFiles& named_files() const { return named_files_; }
 
     /// An error when reading would take more memory than the limit, or has taken too long already.
     [[nodiscard]] Status check(std::uint64_t bytes_of_memory) const;
@@ -34,6 +38,7 @@ public:
 
 private:
     std::string name_, path_;
+    NamedFiles named_files_;
     double seconds_;
     std::size_t memory_bytes_;
     std::chrono::steady_clock::time_point start_;

@@ -11,12 +11,16 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scene/load/scan.hpp"
+#include "scene/load/sniff.hpp"
+#include "scene/load/text.hpp"
 
 namespace sightline::load {
 namespace {
@@ -44,8 +48,42 @@ struct Chunk {
     std::vector<std::uint32_t> polygon_sizes;
     std::vector<Solid> solids;
     std::uint64_t ignored = 0;
+    std::uint64_t false_normals = 0;  ///< see contradicts()
     std::optional<Fault> fault;
 };
+
+/// Whether a facet's normal is more than 45 degrees off the facet, whose corners are these. Nothing
+/// is said of facets so narrow that the rounding of coordinates may have turned them.
+bool contradicts(const glm::dvec3& normal, std::span<const glm::dvec3> corners) {
+    constexpr double kRounding = 1e-5, kCosineSquared = 0.5;
+    glm::dvec3 area(0);
+    double longest = 0, largest = 0;
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+        const glm::dvec3 side = corners[k] - corners[0];
+        if (k > 1) area += glm::cross(corners[k - 1] - corners[0], side);
+        longest = std::max(longest, glm::dot(side, side));
+        largest = std::max(largest, glm::dot(corners[k], corners[k]));
+    }
+    const double size = glm::dot(area, area);
+    if (!(size > kRounding * kRounding * longest * largest)) return false;
+    const double length = glm::dot(normal, normal), along = glm::dot(normal, area);
+    return length > 0 && (along < 0 || along * along < kCosineSquared * length * size);
+}
+
+/// Judges the facet normals of a file of which so many contradict their facets, and are none
+/// already: if these are more than one in a hundred, the others mean nothing either.
+void drop_false_normals(Soup& soup, std::uint64_t contradicting) {
+    constexpr std::uint64_t kMostParts = 100;
+    if (contradicting == 0) return;
+    std::uint64_t facets = 0;
+    for (const SoupMesh& mesh : soup.meshes) facets += mesh.polygon_sizes.size();
+    const bool all = contradicting * kMostParts > facets;
+    if (all) {
+        for (SoupMesh& mesh : soup.meshes) mesh.normals = {}, mesh.normal_corners = {};
+    }
+    soup.notes.push_back(fmt::format("{} of {} facet normals contradict their facets; {} not used",
+                                     contradicting, facets, all ? "all are" : "these are"));
+}
 
 class ChunkParser {
 public:
@@ -129,6 +167,11 @@ void ChunkParser::end_facet() {
     if (!facet_) return fail("an endfacet without a facet");
     facet_ = false;
     if (facet_corners_ >= 3) {
+        const auto corners = std::span(chunk_.positions).last(facet_corners_);
+        if (contradicts(chunk_.normals.back(), corners)) {
+            chunk_.normals.back() = glm::vec3(0);
+            ++chunk_.false_normals;
+        }
         chunk_.polygon_sizes.push_back(static_cast<std::uint32_t>(facet_corners_));
         return;
     }
@@ -180,6 +223,7 @@ void append_object(Soup& soup, SoupMesh& mesh) {
 Soup join(std::vector<Chunk>& chunks) {
     Soup soup;
     SoupMesh mesh;
+    std::uint64_t false_normals = 0;
     for (Chunk& chunk : chunks) {
         std::size_t polygon = 0, position = 0;
         for (const Solid& solid : chunk.solids) {
@@ -191,9 +235,11 @@ Soup join(std::vector<Chunk>& chunks) {
         }
         append(chunk, polygon, chunk.polygon_sizes.size(), position, mesh);
         soup.ignored_primitives += chunk.ignored;
+        false_normals += chunk.false_normals;
         chunk = {};
     }
     append_object(soup, mesh);
+    drop_false_normals(soup, false_normals);
     return soup;
 }
 
@@ -221,17 +267,56 @@ Result<Soup> read_ascii(std::string_view text, const ReadContext& context) {
     return join(chunks);
 }
 
-Result<Soup> read_binary(std::string_view bytes, std::uint32_t facets, const ReadContext& context) {
-    const std::size_t complete = (bytes.size() - kHeaderBytes) / kFacetBytes;
-    if (facets > complete) {
+/// Whether the beginning holds nothing but text.
+bool looks_like_text(std::string_view bytes) {
+    constexpr std::size_t kLooked = 512;
+    return std::ranges::all_of(bytes.substr(0, kLooked), [](char c) {
+        return static_cast<unsigned char>(c) >= 0x20 || is_blank(c) || is_line_end(c);
+    });
+}
+
+/// Begins with "solid", and then there is text: many binary files begin with "solid" as well.
+bool looks_like_solid(std::string_view bytes) {
+    constexpr std::size_t kLooked = 512;
+    const std::string beginning = std::string(bytes.substr(0, kLooked)) + '\n';
+    const char* p = beginning.data();
+    const char* const end = p + beginning.size() - 1;
+    while (p < end && (is_blank(*p) || is_line_end(*p))) ++p;
+    return starts_with_word(p, "solid") && looks_like_text(bytes);
+}
+
+/// How many facets a binary file holds that states another number than fits its size.
+Result<std::uint32_t> count_facets(std::string_view bytes, std::uint32_t stated,
+                                   const ReadContext& context) {
+    const std::size_t size = bytes.size() - kHeaderBytes, complete = size / kFacetBytes;
+    // Some programs don't go back to fill the number in. Others append data of their own.
+    constexpr std::uint32_t kNotFilledIn = 0xFFFFFFFF;
+    const bool lies = stated == 0 || stated == kNotFilledIn || size % kFacetBytes == 0;
+    const bool other = looks_like_text(bytes) || !sniff_format(bytes, bytes.size()).empty();
+    if (stated > complete && (!lies || complete == 0 || other)) {
         return context.unreadable("stl",
-                                  fmt::format("it ends after {} of {} facets", complete, facets));
+                                  fmt::format("it ends after {} of {} facets", complete, stated));
     }
+    if (!lies || other) return stated;
+    return static_cast<std::uint32_t>(std::min<std::size_t>(complete, kMostFacets + 1));
+}
+
+Result<Soup> read_binary(std::string_view bytes, std::uint32_t stated, const ReadContext& context) {
+    const Result<std::uint32_t> counted = count_facets(bytes, stated, context);
+    if (!counted) return counted.error();
+    const std::uint32_t facets = *counted;
     if (facets > kMostFacets) return context.unreadable("stl", "more than 1,431,655,764 facets");
     constexpr std::uint64_t kMemoryPerFacet = 4 * sizeof(glm::vec3) + 7 * sizeof(std::uint32_t);
     if (Status fits = context.check(facets * kMemoryPerFacet); !fits) return fits.error();
     Soup soup;
     if (facets == 0) return soup;
+    if (facets != stated) {
+        soup.notes.push_back(
+            fmt::format("its header states {} facets, but there are {}; all that "
+                        "are there are read",
+                        stated, facets));
+    }
+    std::atomic<std::uint64_t> false_normals{0};
     SoupMesh& mesh = soup.meshes.emplace_back();
     mesh.positions.resize(std::size_t{3} * facets);
     mesh.normals.resize(facets);
@@ -245,7 +330,10 @@ Result<Soup> read_binary(std::string_view bytes, std::uint32_t facets, const Rea
             std::array<glm::vec3, 4> vectors;  // the normal, then the corners
             static_assert(sizeof vectors == kFacetFloatBytes);
             std::memcpy(vectors.data(), data + kFacetBytes * f, kFacetFloatBytes);
-            mesh.normals[f] = vectors[0];
+            const std::array<glm::dvec3, 3> corners = {vectors[1], vectors[2], vectors[3]};
+            const bool is_false = contradicts(vectors[0], corners);
+            if (is_false) ++false_normals;
+            mesh.normals[f] = is_false ? glm::vec3(0) : vectors[0];
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t corner = 3 * f + k;
                 mesh.positions[corner] = vectors[k + 1];
@@ -255,19 +343,8 @@ Result<Soup> read_binary(std::string_view bytes, std::uint32_t facets, const Rea
         }
     });
     soup.objects.push_back({"", 0, glm::dmat4(1.0)});
+    drop_false_normals(soup, false_normals);
     return soup;
-}
-
-/// Begins with "solid", and then there is text: many binary files begin with "solid" as well.
-bool looks_like_text(std::string_view bytes) {
-    constexpr std::size_t kLooked = 512;
-    const std::string beginning = std::string(bytes.substr(0, kLooked)) + '\n';
-    const char* p = beginning.data();
-    const char* const end = p + beginning.size() - 1;
-    while (p < end && (is_blank(*p) || is_line_end(*p))) ++p;
-    return starts_with_word(p, "solid") && std::all_of(p, end, [](char c) {
-               return static_cast<unsigned char>(c) >= 0x20 || is_blank(c) || is_line_end(c);
-           });
 }
 
 }  // namespace
@@ -279,9 +356,10 @@ Result<Soup> read_stl(std::string_view bytes, const ReadContext& context) {
         std::memcpy(&facets, bytes.data() + kHeaderBytes - sizeof facets, sizeof facets);
     const bool exact =
         has_header && bytes.size() == kHeaderBytes + kFacetBytes * std::size_t{facets};
-    if (!exact && looks_like_text(bytes)) {
-        if (bytes.ends_with('\n')) return read_ascii(bytes, context);
-        return read_ascii(std::string(bytes) + '\n', context);
+    const std::string_view text = without_mark(bytes);
+    if (!exact && looks_like_solid(text)) {
+        if (text.ends_with('\n')) return read_ascii(text, context);
+        return read_ascii(std::string(text) + '\n', context);
     }
     if (!has_header) return context.unreadable("stl", "it ends within its header of 84 bytes");
     return read_binary(bytes, facets, context);

@@ -46,6 +46,16 @@ std::string clean_text(std::string_view text) {
     return clean;
 }
 
+std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    return text;
+}
+
+std::string_view last_component(std::string_view path) {
+    return path.substr(path.find_last_of("/\\") + 1);
+}
+
 std::string extension_of(std::string_view path) {
     std::string extension = std::filesystem::path(path).extension().string();
     extension.erase(0, 1);

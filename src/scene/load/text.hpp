@@ -10,6 +10,12 @@ namespace sightline::load {
 /// The text with control characters and bytes that are no UTF-8 replaced by '?'.
 [[nodiscard]] std::string clean_text(std::string_view text);
 
+/// The text without the byte order mark (UTF-8) that some programs begin it with.
+[[nodiscard]] std::string_view without_mark(std::string_view text);
+
+/// The last component of a path of any system.
+[[nodiscard]] std::string_view last_component(std::string_view path);
+
 /// The extension of a file's name in lower case, without the dot; "" when there is none.
 [[nodiscard]] std::string extension_of(std::string_view path);
 
@@ -25,6 +31,9 @@ namespace sightline::load {
 /// Where a file lies that a model names: its name may be relative to the model's folder and have
 /// the slashes of Windows.
 [[nodiscard]] std::string path_beside(const std::string& model, std::string_view name);
+
+/// What is noted of a file whose faces have colours.
+inline constexpr std::string_view kNoFaceColors = "colours of faces are not read";
 
 /// What is noted of the textures of a file, by their names; "" when there are none.
 [[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);

@@ -1,0 +1,11 @@
+// What assimp's reader of OFF files leaves out.
+#pragma once
+
+#include <string_view>
+
+namespace sightline::load {
+
+/// Whether the first face of an OFF file (text) has a colour behind its corners.
+[[nodiscard]] bool off_has_face_colors(std::string_view text);
+
+}  // namespace sightline::load
