@@ -177,7 +177,9 @@ private:
                                   const Placement& placement);
     /// An error when the file is to be written.
     [[nodiscard]] Status check_input(const std::string& path, const std::string& model);
-    [[nodiscard]] Status add_source(const Source& source, const Placement& placement);
+    /// `bytes`, if any, hold those of the source; they are freed when they have been read.
+    [[nodiscard]] Status add_source(Source source, const Placement& placement,
+                                    std::vector<std::byte>* bytes = nullptr);
     [[nodiscard]] Status add_scene(std::string_view text, const std::string& name,
                                    const std::filesystem::path& folder);
 
@@ -229,7 +231,7 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     const bool is_scene = format == "json";
     // assimp reads regular files itself. What is none (a pipe) can be read only once.
     const bool whole = is_scene || has_own_reader(format) || !file->is_regular();
-    const Result<std::vector<std::byte>> bytes = whole ? file->read_all() : file->read_beginning(1);
+    Result<std::vector<std::byte>> bytes = whole ? file->read_all() : file->read_beginning(1);
     if (!bytes) return bytes.error();
     if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
     if (is_scene) {
@@ -239,10 +241,11 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     }
     Source source{path, file->is_regular() ? path : "", format, {}, options_.allowed_paths};
     if (whole) source.bytes = *bytes;
-    return add_source(source, placement);
+    return add_source(source, placement, &*bytes);
 }
 
-Status Loader::add_source(const Source& source, const Placement& placement) {
+Status Loader::add_source(Source source, const Placement& placement,
+                          std::vector<std::byte>* bytes) {
     if (!has_own_reader(source.format) &&
         !std::ranges::binary_search(assimp_extensions(), source.format)) {
         return unknown_format(source.name, source.format);
@@ -252,6 +255,10 @@ Status Loader::add_source(const Source& source, const Placement& placement) {
         if (std::optional<Error> other = other_format(source)) return *std::move(other);
     }
     const Result<Soup> soup = read_soup(source, options_);
+    if (soup && bytes != nullptr) {
+        source.bytes = {};
+        *bytes = {};
+    }
     if (soup) {
         for (const std::string& file : soup->files)
             if (Status free = check_input(file, source.name); !free) return free;

@@ -79,7 +79,7 @@ void drop_false_normals(Soup& soup, std::uint64_t contradicting) {
     for (const SoupMesh& mesh : soup.meshes) facets += mesh.polygon_sizes.size();
     const bool all = contradicting * kMostParts > facets;
     if (all) {
-        for (SoupMesh& mesh : soup.meshes) mesh.normals = {}, mesh.normal_corners = {};
+        for (SoupMesh& mesh : soup.meshes) mesh.normals = {}, mesh.has_polygon_normals = false;
     }
     soup.notes.push_back(fmt::format("{} of {} facet normals contradict their facets; {} not used",
                                      contradicting, facets, all ? "all are" : "these are"));
@@ -203,11 +203,10 @@ void append(const Chunk& chunk, std::size_t first, std::size_t end, std::size_t&
     for (std::size_t polygon = first; polygon < end; ++polygon) {
         const std::uint32_t size = chunk.polygon_sizes[polygon];
         mesh.polygon_sizes.push_back(size);
-        const auto normal = static_cast<std::uint32_t>(mesh.normals.size());
+        mesh.has_polygon_normals = true;
         mesh.normals.push_back(chunk.normals[polygon]);
         for (std::uint32_t k = 0; k < size; ++k) {
             mesh.corners.push_back(static_cast<std::uint32_t>(mesh.precise_positions.size()));
-            mesh.normal_corners.push_back(normal);
             mesh.precise_positions.push_back(chunk.positions[position++]);
         }
     }
@@ -306,7 +305,7 @@ Result<Soup> read_binary(std::string_view bytes, std::uint32_t stated, const Rea
     if (!counted) return counted.error();
     const std::uint32_t facets = *counted;
     if (facets > kMostFacets) return context.unreadable("stl", "more than 1,431,655,764 facets");
-    constexpr std::uint64_t kMemoryPerFacet = 4 * sizeof(glm::vec3) + 7 * sizeof(std::uint32_t);
+    constexpr std::uint64_t kMemoryPerFacet = 4 * sizeof(glm::vec3) + 4 * sizeof(std::uint32_t);
     if (Status fits = context.check(facets * kMemoryPerFacet); !fits) return fits.error();
     Soup soup;
     if (facets == 0) return soup;
@@ -322,7 +321,7 @@ Result<Soup> read_binary(std::string_view bytes, std::uint32_t stated, const Rea
     mesh.normals.resize(facets);
     mesh.polygon_sizes.assign(facets, 3);
     mesh.corners.resize(std::size_t{3} * facets);
-    mesh.normal_corners.resize(std::size_t{3} * facets);
+    mesh.has_polygon_normals = true;
     const char* const data = bytes.data() + kHeaderBytes;
     using Range = tbb::blocked_range<std::uint32_t>;
     tbb::parallel_for(Range(0, facets, 4096), [&](const Range& range) {
@@ -338,7 +337,6 @@ Result<Soup> read_binary(std::string_view bytes, std::uint32_t stated, const Rea
                 const std::uint32_t corner = 3 * f + k;
                 mesh.positions[corner] = vectors[k + 1];
                 mesh.corners[corner] = corner;
-                mesh.normal_corners[corner] = f;
             }
         }
     });
