@@ -61,7 +61,7 @@ void find_degenerate(Scene& scene) {
     });
     scene.counts.degenerate_triangles = static_cast<std::uint64_t>(
         std::count(scene.degenerate.begin(), scene.degenerate.end(), std::uint8_t{1}));
-    if (scene.counts.degenerate_triangles == 0) scene.degenerate = {};
+    if (scene.counts.degenerate_triangles == 0) std::vector<std::uint8_t>().swap(scene.degenerate);
 }
 
 /// What is derived, after the bounds of the triangles. Equal positions of an object share an index

@@ -143,8 +143,8 @@ bool ClosednessTest::volumes_positive() {
         double volume = 0, size = 0;
         bool is_drawn = false;
     };
-    edges_ = {};
-    first_ = {};
+    std::vector<Edge>().swap(edges_);
+    std::vector<std::uint64_t>().swap(first_);
     std::vector<Sum> sums;
     const std::vector<std::uint32_t> part_of = parts_.numbers();
     const glm::dvec3 origin = point(0, 0);

@@ -15,9 +15,10 @@
 namespace sightline::load {
 namespace {
 
-/// Memory that a triangle takes in a finished scene and while it is finished: three indices each
-/// for corners, normals and colours, half a position, its sheet, and the tables that join and pair.
-constexpr std::size_t kBytesPerTriangle = 128;
+/// Memory that a triangle takes while its scene is finished: three indices each for corners and
+/// normals, its place in the table of sheets, and the tables that join and pair. Positions, normals
+/// and colours come on top.
+constexpr std::size_t kBytesPerTriangle = 126;
 
 /// How early the joiner of positions is told what comes, when it has more than fit into a cache.
 constexpr std::size_t kCornersAhead = 24, kMostCached = 200'000;
@@ -121,14 +122,20 @@ Status SceneBuilder::check_size(const Soup& soup, const Placement& placement) co
                         "use a model with faces",
                         placement.file, soup.ignored_primitives)};
     }
-    if ((triangles + scene_.triangles.size()) > memory_limit_ / kBytesPerTriangle) {
-        return Error{
-            ErrorKind::bad_input,
-            fmt::format("{}: {} triangles take more than {} MiB of memory; raise the memory "
-                        "limit or use a simpler model",
-                        placement.file, triangles, memory_limit_ >> 20)};
-    }
-    return success();
+    return check_memory(triangles, placement);
+}
+
+Status SceneBuilder::check_memory(std::uint64_t more_triangles, const Placement& placement) const {
+    const std::uint64_t triangles = more_triangles + scene_.triangles.size();
+    const std::uint64_t bytes = triangles * kBytesPerTriangle +
+                                scene_.positions.size() * sizeof(scene_.positions[0]) +
+                                scene_.normals.size() * sizeof(scene_.normals[0]) +
+                                scene_.colors.size() * (sizeof(scene_.colors[0]) + sizeof(Corners));
+    if (bytes <= memory_limit_) return success();
+    return Error{ErrorKind::bad_input,
+                 fmt::format("{}: {} triangles take more than {} MiB of memory; raise the memory "
+                             "limit or use a simpler model",
+                             placement.file, triangles, memory_limit_ >> 20)};
 }
 
 void SceneBuilder::append_materials(const Soup& soup, const Placement& placement) {
@@ -218,6 +225,7 @@ Status SceneBuilder::append_object(const Instance& instance) {
     fill_attributes(mesh);
     largest_float_ = 0;
     if (Status added = append_polygons(instance); !added) return added;
+    if (Status fits = check_memory(0, instance.placement); !fits) return fits;
     scene_.rounding =
         std::max(scene_.rounding, rounding_through(instance.transform, largest_float_));
     object.triangle_count = scene_.triangle_count() - object.first_triangle;

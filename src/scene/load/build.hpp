@@ -62,6 +62,8 @@ private:
     };
 
     [[nodiscard]] Status check_size(const Soup& soup, const Placement& placement) const;
+    [[nodiscard]] Status check_memory(std::uint64_t more_triangles,
+                                      const Placement& placement) const;
     void append_materials(const Soup& soup, const Placement& placement);
     void append_notes(const Soup& soup, const Placement& placement);
     [[nodiscard]] std::uint32_t material_of(const SoupMesh& mesh, const Placement& placement);

@@ -257,7 +257,7 @@ Status Loader::add_source(Source source, const Placement& placement,
     const Result<Soup> soup = read_soup(source, options_);
     if (soup && bytes != nullptr) {
         source.bytes = {};
-        *bytes = {};
+        std::vector<std::byte>().swap(*bytes);
     }
     if (soup) {
         for (const std::string& file : soup->files)

@@ -71,7 +71,7 @@ std::size_t resolve(ObjIndices& indices, std::size_t before, std::size_t count) 
 template <class T>
 void append(std::vector<T>& to, std::vector<T>& from) {
     to.insert(to.end(), from.begin(), from.end());
-    from = {};
+    std::vector<T>().swap(from);
 }
 
 /// Polygons of one object and material that follow one another.
@@ -270,7 +270,7 @@ SoupMesh ObjReader::part(const Run& run, std::size_t first_corner) {
     if (!all_.normal_corners.empty()) {
         renumber(all_.normal_corners, part_normals_, mesh.normal_corners,
                  [&](std::uint32_t index) { mesh.normals.push_back(all_.normals[index]); });
-        if (mesh.normals.empty()) mesh.normal_corners = {};
+        if (mesh.normals.empty()) std::vector<std::uint32_t>().swap(mesh.normal_corners);
     }
     return mesh;
 }
