@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <new>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "scene/finish.hpp"
@@ -34,9 +36,39 @@ constexpr std::byte kSoup{0}, kMessage{1};
 
 Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
 
-/// `fill`: what memory holds that nobody has set; see read_foreign().
+/// Makes the memory that malloc() hands out from here on hold this byte (or its complement) where
+/// nobody sets it, beyond the end of a block too, and lie at an address that depends on the byte.
+/// For the child: it slows malloc() down and leaks.
+void fill_memory(int byte) {
+    constexpr std::size_t kLargest = std::size_t{4} << 20, kMost = std::size_t{256} << 20;
+    constexpr int kNever = 32 << 20;
+    mallopt(M_PERTURB, byte);
+    mallopt(M_MMAP_THRESHOLD, kNever);  // from the heap, and
+    mallopt(M_TRIM_THRESHOLD, kNever);  // not given back to the system
+    void* volatile shift = std::malloc(static_cast<std::size_t>(byte) << 12);
+    if (shift == nullptr) return;
+    // What the caller left free is taken until the heap grows, in blocks of every size; what is
+    // freed is filled.
+    void* blocks = nullptr;
+    std::size_t total = 0;
+    for (std::size_t size = kLargest; size > 3 * sizeof(void*); size /= 2) {
+        for (const void* const end = sbrk(0); sbrk(0) == end && total < kMost; total += size) {
+            void* const block = std::malloc(size);
+            if (block == nullptr) break;
+            std::memcpy(block, &blocks, sizeof blocks);  // a list, which takes no memory more
+            blocks = block;
+        }
+    }
+    while (blocks != nullptr) {
+        void* next = nullptr;
+        std::memcpy(&next, blocks, sizeof next);
+        std::free(std::exchange(blocks, next));
+    }
+}
+
+/// `fill`: see fill_memory().
 std::vector<std::byte> read_in_child(const Source& source, int fill) {
-    mallopt(M_PERTURB, fill);
+    fill_memory(fill);
     std::variant<Soup, std::string> read = read_with_assimp(source);
     std::vector<std::byte> bytes;
     if (const Soup* soup = std::get_if<Soup>(&read)) {
