@@ -156,8 +156,11 @@ TEST(ForeignFiles, AReadingThatIsNotRepeatableIsRefused) {
 }
 
 TEST(ForeignFiles, NullsInWhatIsReadArePassedOver) {
-    const Scene scene = loaded(load_text("a\n\nb\n0 0 0 1 0 0 1 1 0\n", "raw"));
-    EXPECT_EQ(scene.triangle_count(), 1u);
+    const std::string face = "0 0 0 1 0 0 1 1 0\n";
+    EXPECT_EQ(loaded(load_text("a\n\nb\n" + face, "raw")).triangle_count(), 1u);
+    // Its reader puts the first of two groups at no node.
+    const Scene two = loaded(load_text("a\n" + face + "b\n" + face + face, "raw"));
+    EXPECT_EQ(two.triangle_count(), 3u);
 }
 
 TEST(ForeignFiles, AByteOrderMarkIsSkipped) {

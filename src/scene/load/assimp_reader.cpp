@@ -142,16 +142,29 @@ std::string object_name(const aiNode& node, const SoupMesh& mesh) {
     return own ? name : mesh.name;
 }
 
-void append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
+/// Appends the objects of a node and below it; whether nodes are missing there. Some readers leave
+/// null pointers where they went wrong.
+bool append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
     const glm::dmat4 transform = above * matrix_of(node.mTransformation);
-    // Some readers leave null pointers where they gave up.
     for (unsigned i = 0; i < node.mNumMeshes && node.mMeshes != nullptr; ++i) {
         const std::uint32_t mesh = node.mMeshes[i];
         if (mesh >= soup.meshes.size()) continue;
         soup.objects.push_back({object_name(node, soup.meshes[mesh]), mesh, transform});
     }
+    bool missing = false;
     for (unsigned i = 0; i < node.mNumChildren && node.mChildren != nullptr; ++i) {
-        if (node.mChildren[i] != nullptr) append_nodes(*node.mChildren[i], transform, soup);
+        const aiNode* const child = node.mChildren[i];
+        missing |= child == nullptr || append_nodes(*child, transform, soup);
+    }
+    return missing;
+}
+
+/// Where nodes are missing, meshes that stand at no node are objects as they are stored.
+void append_lost_meshes(Soup& soup) {
+    std::vector<bool> placed(soup.meshes.size());
+    for (const SoupObject& object : soup.objects) placed[object.mesh] = true;
+    for (std::uint32_t mesh = 0; mesh < soup.meshes.size(); ++mesh) {
+        if (!placed[mesh]) soup.objects.push_back({soup.meshes[mesh].name, mesh, glm::dmat4(1.0)});
     }
 }
 
@@ -218,7 +231,9 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
             soup.meshes.back().material = numbers[mesh.mMaterialIndex];
         }
     }
-    if (scene.mRootNode != nullptr) append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup);
+    if (scene.mRootNode != nullptr && append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup)) {
+        append_lost_meshes(soup);
+    }
     note_what_is_not_read(scene, soup);
     return soup;
 }
