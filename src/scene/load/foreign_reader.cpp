@@ -30,7 +30,7 @@ Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(m
 /// Makes the memory that malloc() hands out from here on hold this byte (or its complement) where
 /// nobody sets it, beyond the end of a block too, and lie at an address that depends on the byte.
 /// For the child: it slows malloc() down and leaks.
-void fill_memory(int byte) {
+[[maybe_unused]] void fill_memory(int byte) {
     constexpr std::size_t kLargest = std::size_t{4} << 20, kMost = std::size_t{256} << 20;
     constexpr int kNever = 32 << 20;
     mallopt(M_PERTURB, byte);
@@ -57,9 +57,11 @@ void fill_memory(int byte) {
     }
 }
 
-/// `fill`: see fill_memory().
-std::vector<std::byte> read_in_child(const Source& source, int fill) {
+/// `fill`: see fill_memory(). Sanitizers have an allocator of their own, which fills what it likes.
+std::vector<std::byte> read_in_child(const Source& source, [[maybe_unused]] int fill) {
+#if !defined(SIGHTLINE_SANITIZED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     fill_memory(fill);
+#endif
     std::variant<Soup, std::string> read = read_with_assimp(source);
     std::vector<std::byte> bytes;
     if (const Soup* soup = std::get_if<Soup>(&read)) {
