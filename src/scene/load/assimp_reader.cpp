@@ -151,16 +151,29 @@ std::string object_name(const aiNode& node, const SoupMesh& mesh) {
     return own ? name : mesh.name;
 }
 
-void append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
+/// Appends the objects of a node and below it; whether nodes are missing there. Some readers leave
+/// null pointers where they went wrong.
+bool append_nodes(const aiNode& node, const glm::dmat4& above, Soup& soup) {
     const glm::dmat4 transform = above * matrix_of(node.mTransformation);
-    // Some readers leave null pointers where they gave up.
     for (unsigned i = 0; i < node.mNumMeshes && node.mMeshes != nullptr; ++i) {
         const std::uint32_t mesh = node.mMeshes[i];
         if (mesh >= soup.meshes.size()) continue;
         soup.objects.push_back({object_name(node, soup.meshes[mesh]), mesh, transform});
     }
+    bool missing = false;
     for (unsigned i = 0; i < node.mNumChildren && node.mChildren != nullptr; ++i) {
-        if (node.mChildren[i] != nullptr) append_nodes(*node.mChildren[i], transform, soup);
+        const aiNode* const child = node.mChildren[i];
+        missing |= child == nullptr || append_nodes(*child, transform, soup);
+    }
+    return missing;
+}
+
+/// Where nodes are missing, meshes that stand at no node are objects as they are stored.
+void append_lost_meshes(Soup& soup) {
+    std::vector<bool> placed(soup.meshes.size());
+    for (const SoupObject& object : soup.objects) placed[object.mesh] = true;
+    for (std::uint32_t mesh = 0; mesh < soup.meshes.size(); ++mesh) {
+        if (!placed[mesh]) soup.objects.push_back({soup.meshes[mesh].name, mesh, glm::dmat4(1.0)});
     }
 }
 
@@ -227,7 +240,9 @@ Soup soup_of(const aiScene& scene, const std::string& format) {
             soup.meshes.back().material = numbers[mesh.mMaterialIndex];
         }
     }
-    if (scene.mRootNode != nullptr) append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup);
+    if (scene.mRootNode != nullptr && append_nodes(*scene.mRootNode, glm::dmat4(1.0), soup)) {
+        append_lost_meshes(soup);
+    }
     note_what_is_not_read(scene, soup);
     return soup;
 }
@@ -249,6 +264,14 @@ std::string bytes_of(const Source& source) {
     if (!file) return {};
     const Result<std::vector<std::byte>> bytes = file->read_all();
     return bytes ? text_of(*bytes) : std::string();
+}
+
+/// An importer that is never destroyed: after some files that were read well, its destructor
+/// crashes.
+Assimp::Importer* new_importer() {
+    static auto* const all = new std::vector<Assimp::Importer*>;  // so none counts as leaked
+    all->push_back(new Assimp::Importer);
+    return all->back();
 }
 
 const aiScene* import(Assimp::Importer& importer, const Source& source, AssimpFiles::Names& names) {
@@ -297,8 +320,7 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     auto* const errors = new ErrorLog;  // the logger deletes it
     logger->attachStream(errors, Assimp::Logger::Err);
-    // Never destroyed: after some files that were read well, the destructor crashes.
-    auto* const importer = new Assimp::Importer;
+    Assimp::Importer* const importer = new_importer();
     AssimpFiles::Names names;
     const aiScene* scene = import(*importer, source, names);
     const std::set<std::string>& refused = names.refused;

@@ -3,24 +3,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <malloc.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <new>
 #include <set>
 #include <string_view>
 #include <system_error>
-#include <variant>
 
 #include "scene/finish.hpp"
 #include "scene/load/assimp_reader.hpp"
 #include "scene/load/build.hpp"
-#include "scene/load/contained.hpp"
+#include "scene/load/foreign_reader.hpp"
 #include "scene/load/input.hpp"
 #include "scene/load/reader.hpp"
 #include "scene/load/scene_file.hpp"
@@ -31,27 +27,7 @@ namespace sightline {
 namespace load {
 namespace {
 
-// What the child sends: one of these, then a soup or a message.
-constexpr std::byte kSoup{0}, kMessage{1};
-
 Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
-
-/// `fill`: what memory holds that nobody has set; see read_foreign().
-std::vector<std::byte> read_in_child(const Source& source, int fill) {
-    mallopt(M_PERTURB, fill);
-    std::variant<Soup, std::string> read = read_with_assimp(source);
-    std::vector<std::byte> bytes;
-    if (const Soup* soup = std::get_if<Soup>(&read)) {
-        bytes = serialise(*soup);
-        bytes.push_back(kSoup);  // at the end, where it costs nothing
-    } else {
-        const std::string& message = *std::get_if<std::string>(&read);
-        const auto text = std::as_bytes(std::span(message));
-        bytes.assign(text.begin(), text.end());
-        bytes.push_back(kMessage);
-    }
-    return bytes;
-}
 
 std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -62,56 +38,13 @@ bool is_utf16(std::string_view bytes) {
     return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
 }
 
-/// What assimp makes of a file, as bytes from its child process. Some of its readers use memory
-/// that they have not set, so the same file gives another model each time. So nothing that was not
-/// set is left to chance, and a file of moderate size is read twice, with other values there.
-Result<MappedBytes> read_foreign(const Source& source, const LoadOptions& options) {
-    constexpr int kFill = 0x55, kOtherFill = 0xAB;
-    constexpr std::uintmax_t kReadTwice = std::uintmax_t{16} << 20;
-    const ChildLimits limits{options.time_limit_seconds, options.memory_limit_bytes};
-    const auto read = [&](int fill) {
-        return run_contained([&] { return read_in_child(source, fill); }, limits, source.name);
-    };
-    Result<MappedBytes> first = read(kFill);
-    if (!first) return first;
-    std::error_code error;
-    const std::uintmax_t size =
-        source.path.empty() ? source.bytes.size() : std::filesystem::file_size(source.path, error);
-    if (error || size > kReadTwice) return first;
-    const Result<MappedBytes> second = read(kOtherFill);
-    if (!second) return second.error();
-    if (!std::ranges::equal(first->bytes(), second->bytes())) {
-        return bad_input(
-            fmt::format("{}: its reader gives another result each time, so none is "
-                        "right; export it again or convert it to another format",
-                        source.name));
-    }
-    return first;
-}
-
 Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
     if (has_own_reader(source.format) && !is_utf16(text_of(source.bytes))) {
         const ReadContext context(source.name, source.path, options.time_limit_seconds,
                                   options.memory_limit_bytes, options.allowed_paths);
         return read_own_format(source.format, text_of(source.bytes), context);
     }
-    const Result<MappedBytes> mapped = read_foreign(source, options);
-    if (!mapped) return mapped.error();
-    const std::span<const std::byte> bytes = mapped->bytes();
-    if (!bytes.empty() && bytes.back() == kMessage) {
-        return bad_input(fmt::format("{}: not a readable {} file ({}); check or export it again",
-                                     source.name, source.format,
-                                     one_line(text_of(bytes.first(bytes.size() - 1)))));
-    }
-    std::optional<Soup> soup;
-    if (!bytes.empty()) soup = deserialise(bytes.first(bytes.size() - 1));
-    if (!soup) {
-        return bad_input(
-            fmt::format("{}: the file is damaged: its reader returned nonsense; export "
-                        "it again or convert it to another format",
-                        source.name));
-    }
-    return std::move(*soup);
+    return read_foreign(source, options);
 }
 
 Error unknown_format(const std::string& name, const std::string& format) {

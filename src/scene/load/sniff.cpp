@@ -60,12 +60,12 @@ std::string format_of_text(std::string_view text) {
 
 }  // namespace
 
-std::string sniff_format(std::string_view bytes, std::size_t size) {
-    if (bytes.starts_with("glTF")) return "glb";
-    if (bytes.starts_with("PK\x03\x04")) return "3mf";
-    if (bytes.starts_with("Kaydara FBX Binary")) return "fbx";
-    if (is_binary_stl(bytes, size)) return "stl";
-    return format_of_text(trimmed(without_mark(bytes.substr(0, kLooked))));
+std::string sniff_format(std::string_view beginning, std::size_t size) {
+    if (beginning.starts_with("glTF")) return "glb";
+    if (beginning.starts_with("PK\x03\x04")) return "3mf";
+    if (beginning.starts_with("Kaydara FBX Binary")) return "fbx";
+    if (is_binary_stl(beginning, size)) return "stl";
+    return format_of_text(trimmed(without_mark(beginning.substr(0, kLooked))));
 }
 
 bool can_sniff(std::string_view format) {
