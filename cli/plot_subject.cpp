@@ -23,12 +23,28 @@ Error nothing_there(const PlotCommandOptions& options, const PlotDomain& domain)
                         domain.z.x, domain.z.y)};
 }
 
+/// An error when there are heights so large that distances between them could not be computed.
+Status check_heights(const HeightMap& map, const std::string& path) {
+    constexpr double kLargestHeight = 1e150;  // its square is finite
+    double lowest = 0, highest = 0;
+    for (const double height : map.y) {
+        if (height < lowest) lowest = height;
+        if (height > highest) highest = height;
+    }
+    if (lowest >= -kLargestHeight && highest <= kLargestHeight) return success();
+    return failure(
+        "{}: heights from {:g} to {:g}, and none beyond {:g} can be drawn; make them smaller "
+        "(--height-scale 1e-300) or name the value that means no data (--no-data {:g})",
+        path, lowest, highest, kLargestHeight, -lowest > highest ? lowest : highest);
+}
+
 Result<std::vector<HeightMap>> load_maps(const PlotCommandOptions& options) {
     std::vector<HeightMap> maps;
     for (const PlotItem& item : options.items) {
         if (item.formula) continue;
         Result<HeightMap> map = load_height_map(item.text, options.map);
         if (!map) return map.error();
+        if (Status drawable = check_heights(*map, item.text); !drawable) return drawable.error();
         maps.push_back(std::move(*map));
     }
     return maps;

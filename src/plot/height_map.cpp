@@ -150,23 +150,6 @@ bool make_heights(HeightTable& table, const HeightMapOptions& options) {
     return any;
 }
 
-/// Heights beyond what can be drawn: nothing is made smaller behind the user's back, and what a
-/// file without a mark for missing values has in their place is often such a number.
-Status check_heights(const HeightTable& table, const std::string& path) {
-    constexpr double kLargestHeight = 1e30;  // as of the coordinates of models
-    double lowest = 0, highest = 0;
-    for (const double height : table.values) {
-        if (height < lowest) lowest = height;
-        if (height > highest) highest = height;
-    }
-    if (lowest >= -kLargestHeight && highest <= kLargestHeight) return success();
-    return bad_input(
-        fmt::format("{}: heights from {:g} to {:g}, and beyond 1e30 none can be drawn; make them "
-                    "smaller (--height-scale 1e-300) or name the value that means no data "
-                    "(--no-data {:g})",
-                    path, lowest, highest, -lowest > highest ? lowest : highest));
-}
-
 /// `count` places from `first` on, or none when they are not apart in double precision.
 std::vector<double> places(double first, double distance, std::size_t count) {
     std::vector<double> out(count);
@@ -259,7 +242,6 @@ Result<HeightMap> make_map(const std::string& path, const HeightMapOptions& opti
                         "value means that",
                         path));
     }
-    if (Status drawable = check_heights(*table, path); !drawable) return drawable.error();
     return place(std::move(*table), options, path);
 }
 

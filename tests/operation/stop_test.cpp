@@ -114,13 +114,19 @@ TEST_F(Stopped, ByTheLimitOnProcessorTime) {
 }
 
 TEST_F(Stopped, HangUpIsIgnoredUnderNohup) {
+    std::vector<std::string> words = words_;
+    words[3] = "3000x3000";
     Running program = [&] {
         std::signal(SIGHUP, SIG_IGN);
-        Running started = start(words_);
+        Running started = start(words);
         std::signal(SIGHUP, SIG_DFL);
         return started;
     }();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    // The handlers stand when files are written.
+    const auto deadline = Clock::now() + std::chrono::seconds(60);
+    while (temporary_files().empty() && Clock::now() < deadline) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     program.send(SIGHUP);
     EXPECT_EQ(program.wait().status, 0);
 }
