@@ -2,6 +2,7 @@
 // on standard error and an exit status (0 done, 1 the job failed, 2 wrong use).
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -10,6 +11,7 @@
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "errors.hpp"
+#include "image/temporary_file.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "streams.hpp"
@@ -71,6 +73,19 @@ int report(const Error& error) {
     return exit_status(error.kind);
 }
 
+/// What the words ask for; what the library and its own libraries throw becomes an error.
+Result<int> run_guarded(const Words& words) {
+    try {
+        return run_program(words);
+    } catch (const std::bad_alloc&) {
+        return failure(
+            "not enough memory; choose a smaller --resolution or --samples, a smaller model, or, "
+            "where surfaces cross one another, --algorithm zbuffer");
+    } catch (const std::exception& error) {
+        return failure("unexpected failure: {}", error.what());
+    }
+}
+
 }  // namespace
 }  // namespace sightline::cli
 
@@ -78,15 +93,9 @@ int main(int argc, char** argv) {
     using namespace sightline;
     cli::occupy_closed_streams();
     cli::install_signal_handlers();
-    try {
-        const Result<int> result = cli::run_program({argv + 1, argv + argc});
-        return result ? *result : cli::report(result.error());
-    } catch (const std::bad_alloc&) {
-        return cli::report(
-            cli::failure("not enough memory; choose a smaller --resolution or --samples, a smaller "
-                         "model, or, where "
-                         "surfaces cross one another, --algorithm zbuffer"));
-    } catch (const std::exception& error) {
-        return cli::report(cli::failure("unexpected failure: {}", error.what()));
-    }
+    const Result<int> result = cli::run_guarded({argv + 1, argv + argc});
+    // From here on a signal comes too late: a run that has its files does not end as one that was
+    // stopped, nor with two messages. The step is never left.
+    const UninterruptedStep last;
+    std::exit(result ? *result : cli::report(result.error()));
 }
