@@ -27,8 +27,8 @@ public:
     /// line, or touch other sides are fine, and so are spikes and bridges of no width: the
     /// triangles cover what the polygon does, once. Where sides cross, they still share the
     /// polygon's corners and sides, but overlap: as little as they can, up to
-    /// LeastArea::kMostCorners. Typically O(n log n). `too_complex` (and no triangles) when all
-    /// polygons so far took kWorkLimit steps.
+    /// LeastArea::kMostCorners. O(n log n), and up to O(n sqrt n) where ears are long and narrow.
+    /// `too_complex` (and no triangles) when all polygons so far took kWorkLimit steps.
     Shape triangulate(std::span<const glm::dvec3> corners, std::vector<PolygonTriangle>& triangles);
 
 private:
