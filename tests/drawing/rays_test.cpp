@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "drawing/crossing_parts.hpp"
 #include "drawing/pages.hpp"
 #include "drawing/surfaces.hpp"
 #include "support/embree_scene.hpp"
@@ -111,8 +112,10 @@ private:
 /// Points inside of the parts of an edge, the ends left out.
 void judge_edge(const Judge& judge, const PageEdge& edge, std::span<const EdgeInterval> hidden,
                 Random& random, Score& score) {
+    const double steps = glm::length(glm::dvec2(edge.q.x - edge.p.x, edge.q.y - edge.p.y));
     const auto judge_part = [&](double from, double to, bool visible) {
-        if (to - from < 1e-3) return;
+        // By so much rounding may have moved the ends of a curve.
+        if (to - from < 1e-3 || (to - from) * steps < 2 * kJoinedSteps) return;
         for (int k = 0; k < 2; ++k)
             judge.judge(edge, from + (to - from) * random.uniform(0.02, 0.98), visible, score);
     };

@@ -73,11 +73,14 @@ public:
         return best == nullptr ? kNone : best->id;
     }
 
-    /// Whether something else is seen somewhere within two units: there is a border near by.
+    /// Whether something else is seen somewhere within four units: there is a border near by. A
+    /// triangle whose mean width is four, which is no region of its own, has no point farther from
+    /// its border.
     [[nodiscard]] bool near_border(std::int32_t x, std::int32_t y) const {
+        constexpr std::int32_t kWithin = 4;
         const std::uint32_t own = polygon_at(x, y);
-        for (std::int32_t dx = -2; dx <= 2; ++dx)
-            for (std::int32_t dy = -2; dy <= 2; ++dy)
+        for (std::int32_t dx = -kWithin; dx <= kWithin; ++dx)
+            for (std::int32_t dy = -kWithin; dy <= kWithin; ++dy)
                 if (polygon_at(x + dx, y + dy) != own) return true;
         return false;
     }
@@ -85,6 +88,15 @@ public:
     [[nodiscard]] std::uint32_t polygon_at(std::int32_t x, std::int32_t y) const {
         const std::uint32_t id = at(x, y);
         return id == kNone ? kNone : page_.scene().triangle_polygon[id];
+    }
+
+    /// Whether a triangle of the polygon lies over a point, seen or not.
+    [[nodiscard]] bool is_over(std::uint32_t polygon, std::int32_t x, std::int32_t y) const {
+        return std::ranges::any_of(grid_.around({x, y}), [&](std::uint32_t k) {
+            const Entry& entry = entries_[k];
+            return page_.scene().triangle_polygon[entry.id] == polygon &&
+                   covers(entry.triangle, x, y);
+        });
     }
 
 private:
