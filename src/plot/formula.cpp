@@ -82,6 +82,11 @@ Result<Expression> Expression::parse(std::string_view text) {
     try {
         auto state = std::make_unique<State>(std::string(text));
         state->parser.Eval();
+        // A list of values is one to the parser, whose last value counts.
+        if (state->parser.GetNumResults() != 1) {
+            return wrong(fmt::format("'{}' has a comma between values; write decimals with a point",
+                                     load::shortened(text)));
+        }
         return Expression(std::move(state));
     } catch (const mu::ParserError& error) {
         return wrong(complaint(error, text));

@@ -61,6 +61,16 @@ TEST(Formula, ErrorsShowThePlace) {
         complaint_about(text);
 }
 
+TEST(Formula, ACommaIsNoDecimalPoint) {
+    for (const char* text : {"y = 1,5*x", "y = x,z", "1,5 = x*y", "2,x"}) {
+        const Result<Formula> formula = parse_formula(text);
+        ASSERT_FALSE(formula) << text;
+        EXPECT_NE(formula.error().message.find("decimals with a point"), std::string::npos)
+            << formula.error().message;
+    }
+    EXPECT_TRUE(parse_formula("y = hypot(x, z) + mod(x, 2)"));
+}
+
 TEST(Formula, CopiesAreIndependent) {
     Formula one = must_parse("y = x + z");
     Formula two = one;

@@ -123,6 +123,13 @@ TEST(BadInput, OnePoint) {
         "size");
 }
 
+TEST(BadInput, TooSmallToCompute) {
+    EXPECT_EQ(message_of(load_text("v 0 0 0\nv 2e-31 0 0\nv 0 1e-120 0\nf 1 2 3\n", "obj")),
+              "input.obj: a scene of size 2e-31, and none below 1e-30 can be drawn; use larger "
+              "numbers");
+    EXPECT_TRUE(load_text("v 0 0 0\nv 2e-30 0 0\nv 0 2e-30 0\nf 1 2 3\n", "obj"));
+}
+
 TEST(BadInput, TimeLimit) {
     LoadOptions options;
     options.format = "obj";

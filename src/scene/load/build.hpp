@@ -35,6 +35,8 @@ struct Placement {
 
 /// Coordinates beyond this are refused: their cubes would overflow in later stages.
 inline constexpr double kLargestCoordinate = 1e30;
+/// A scene whose largest extent is below this is refused: there they would underflow.
+inline constexpr double kLeastSize = 1e-30;
 
 /// Collects soups into one scene, in the order given. Not thread-safe.
 class SceneBuilder {

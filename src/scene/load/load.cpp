@@ -273,6 +273,13 @@ Result<Scene> Loader::finish(const std::string& name) {
                         "use a model that has a size",
                         name, p.x, p.y, p.z));
     }
+    const glm::dvec3 extent = scene.bounds.extent();
+    const double size = std::max({extent.x, extent.y, extent.z});
+    if (size < kLeastSize) {
+        return bad_input(fmt::format("{}: a scene of size {:g}, and none below {:g} can be drawn; "
+                                     "use larger numbers",
+                                     name, size, kLeastSize));
+    }
     return scene;
 }
 
