@@ -107,7 +107,7 @@ TEST_F(NamedFilesTest, AMaterialLibraryIsReadOnce) {
     for (int i = 0; i < 20'000; ++i) large += "newmtl n" + std::to_string(i) + "\nKd 0 1 0\n";
     (void)folder_.write("a/models/m.mtl", large + kRed);
     std::string text;
-    for (int i = 0; i < 3'000; ++i) {
+    for (std::size_t i = 0; i < 3'000; ++i) {
         text += i % 2 == 0 ? "mtllib m.mtl\n" : "mtllib " + std::string(i, '/') + "m.mtl\n";
         text += "mtllib below/../m.mtl\n";
     }
