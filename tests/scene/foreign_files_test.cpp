@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "scene/load/gltf_extensions.hpp"
+#include "scene/load/gltf_document.hpp"
 #include "scene/load/off_colors.hpp"
 #include "scene/load/sniff.hpp"
 #include "scene/meshes.hpp"
@@ -44,6 +44,15 @@ std::string buffer() {
     for (int i = 0; i < 3; ++i) bytes += raw(1.f, 0.f, 0.f, 0.f);
     for (int i = 0; i < 16; ++i) bytes += raw(i % 5 == 0 ? 1.f : 0.f);
     return bytes;
+}
+
+/// The binary form, in which the JSON's chunk states this size.
+std::string binary_gltf(std::uint32_t version, const std::string& json, std::size_t stated,
+                        const std::string& rest = "") {
+    return "glTF" +
+           raw(version, static_cast<std::uint32_t>(20 + json.size() + rest.size()),
+               static_cast<std::uint32_t>(stated)) +
+           "JSON" + json + rest;
 }
 
 const std::string kDae = R"(<?xml version="1.0"?>
@@ -127,12 +136,54 @@ TEST(ForeignFiles, RequiredExtensionsAreRefusedByName) {
     const std::string harmless = requiring("\"KHR_texture_transform\",\"KHR_materials_unlit\"");
     EXPECT_EQ(loaded(load_one(folder.write("a.gltf", harmless))).triangle_count(), 1u);
     const std::string json = requiring("\"KHR_mesh_quantization\"");
-    const auto size = static_cast<std::uint32_t>(json.size());
-    const std::string binary = "glTF" + raw(2u, size + 20, size) + "JSON" + json;
-    EXPECT_EQ(load::unsupported_gltf_extension(binary), "KHR_mesh_quantization");
+    const std::string binary = binary_gltf(2, json, json.size());
+    EXPECT_EQ(load::read_gltf_document(binary).fault,
+              "it requires the extension KHR_mesh_quantization, which is not supported");
     for (std::size_t cut = 0; cut < binary.size(); cut += 7) {
-        EXPECT_EQ(load::unsupported_gltf_extension(binary.substr(0, cut)), "");
+        EXPECT_NE(load::read_gltf_document(binary.substr(0, cut)).fault, "");
     }
+    // By its content assimp finds the format, too, where the name is that of several.
+    const std::string other = folder.write("a.xml", std::string(5000, ' ') + json);
+    EXPECT_NE(message_of(load_one(other)).find("looks like gltf"), std::string::npos);
+}
+
+TEST(ForeignFiles, GltfThatCanBeUnderstoodInAnotherWayIsRefused) {
+    const auto fault = [](const std::string& text) {
+        return load::read_gltf_document(with(kGltf, "\"scene\":0", text)).fault;
+    };
+    const std::string required = R"("extensionsRequired":["KHR_mesh_quantization"])";
+    EXPECT_EQ(fault(required + R"(,"extensionsRequired":[])"),
+              "extensionsRequired: this key stands twice in one object");
+    EXPECT_NE(fault(required + ",\"extras\":\"\xe9\"").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(fault(required + ",\"extras\":1e999").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(load::read_gltf_document(kGltf + '\0' + kGltf).fault, "");
+    EXPECT_NE(load::read_gltf_document("[1]").fault, "");
+    EXPECT_EQ(fault("\"extras\":\"\xc3\xa9\""), "");
+}
+
+TEST(ForeignFiles, SizesInBinaryGltfAreNotBelieved) {
+    constexpr std::size_t kMost = 0xffffffff;
+    const std::string json = with(kGltf, ",\"uri\":\"tri.bin\"", "");
+    const auto chunk = [](std::size_t stated) {
+        return raw(static_cast<std::uint32_t>(stated)) + std::string("BIN\0", 4) + buffer();
+    };
+    const std::string aligned = json + std::string((4 - json.size() % 4) % 4, ' ');
+    for (const std::string& padding : {std::string(4, ' '), std::string(4, '\0')}) {
+        const std::string text = aligned + padding;
+        const std::string good = binary_gltf(2, text, text.size(), chunk(160));
+        EXPECT_EQ(loaded(scene_test::load_text(good, "glb")).triangle_count(), 1u);
+    }
+    for (const std::uint32_t version : {1u, 2u}) {
+        const std::string lying = binary_gltf(version, json, kMost);
+        EXPECT_NE(message_of(scene_test::load_text(lying, "glb"))
+                      .find(std::to_string(kMost) + " bytes, but " + std::to_string(json.size())),
+                  std::string::npos);
+    }
+    EXPECT_NE(load::read_gltf_document(binary_gltf(2, aligned + " ", aligned.size() + 1,
+                                                   std::string(3, '\0') + chunk(kMost)))
+                  .fault,
+              "");
+    EXPECT_EQ(load::read_gltf_document(binary_gltf(1, json, json.size(), buffer())).fault, "");
 }
 
 TEST(ForeignFiles, NoShapesAreMadeUpForBones) {

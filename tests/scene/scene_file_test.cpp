@@ -189,6 +189,8 @@ TEST(SceneFile, BrokenJson) {
               0u);
     EXPECT_EQ(error_in(R"({"models": [], "models": []})"),
               "scene.json: models: this key stands twice in one object");
+    EXPECT_EQ(error_in(in_model(R"("name": "b")") + '\0' + "junk"),
+              "scene.json: not valid JSON: byte 64 is NUL");
     EXPECT_NE(error_in(in_camera(R"("zoom": 1e999)")), "no error");
     EXPECT_NE(error_in(std::string(200000, '[')), "no error");
     EXPECT_NE(error_in(std::string(200000, '[') + std::string(200000, ']')), "no error");
@@ -251,6 +253,20 @@ TEST(SceneFile, ModelsAreFoundBesideIt) {
     ASSERT_TRUE(scene.camera.has_value());
     EXPECT_EQ(scene.camera->fov, 20.0);
     EXPECT_EQ(scene.lights.size(), 1u);
+}
+
+TEST(SceneFile, TransformsThatOverflowAreBlamed) {
+    const std::string scale = R"({"scale": 1e300})";
+    EXPECT_EQ(error_in(in_model("\"transform\": [" + scale + ", " + scale + "]")),
+              "scene.json: models[1].transform: its numbers overflow; use smaller ones");
+    const TemporaryFolder folder;
+    (void)folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string beginning = R"({"models": [{"path": "a.obj", "transform": [)" + scale;
+    EXPECT_NE(message_of(load_one(folder.write("s.json", beginning + "]}]}")))
+                  .find("it comes from the transforms of the object"),
+              std::string::npos);
+    const std::string back = beginning + R"(, {"scale": 1e-300}]}]})";
+    EXPECT_EQ(loaded(load_one(folder.write("s.json", back))).triangle_count(), 1u);
 }
 
 TEST(SceneFile, AMissingModelIsNamed) {

@@ -12,6 +12,7 @@ namespace sightline::load {
 bool AssimpFiles::may_open(const std::string& file) const {
     constexpr std::size_t kMostNoted = 20;
     const NamedFiles::Verdict verdict = named_.judge(file);
+    if (verdict != NamedFiles::Verdict::missing) names_.asked_for.insert(file);
     const bool refused =
         verdict == NamedFiles::Verdict::outside || verdict == NamedFiles::Verdict::special;
     if (refused && names_.refused.size() < kMostNoted) names_.refused.insert(file);
@@ -43,7 +44,6 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
     if (!std::string_view(mode).starts_with('r')) return nullptr;
     if (file == alias_) return open_model(mode);
     if (!may_open(file)) return nullptr;
-    names_.opened.insert(file);
     return DefaultIOSystem::Open(file, mode);
 }
 

@@ -12,9 +12,10 @@ namespace sightline::load {
 
 class AssimpFiles : public Assimp::DefaultIOSystem {
 public:
-    /// Of the files beside the model.
+    /// Of the files beside the model: those that are there or lie outside, and some of those that
+    /// may not be opened.
     struct Names {
-        std::set<std::string> opened, refused;
+        std::set<std::string> asked_for, refused;
     };
 
     /// assimp sees the model at `path` under the name `alias`, whose extension is its format.

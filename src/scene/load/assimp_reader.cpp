@@ -4,6 +4,7 @@
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
@@ -13,16 +14,18 @@
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <set>
 #include <string_view>
 
 #include "scene/load/assimp_files.hpp"
-#include "scene/load/gltf_extensions.hpp"
+#include "scene/load/gltf_document.hpp"
 #include "scene/load/input.hpp"
 #include "scene/load/off_colors.hpp"
 #include "scene/load/text.hpp"
+#include "scene/load/texture_names.hpp"
 
 namespace sightline::load {
 namespace {
@@ -95,7 +98,8 @@ void collect_textures(const aiMaterial& material, std::set<std::string>& names) 
 std::set<std::string> textures_of(const aiScene& scene) {
     std::set<std::string> names;
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
-        if (!is_invented(*scene.mMaterials[i])) collect_textures(*scene.mMaterials[i], names);
+        const aiMaterial* const material = scene.mMaterials[i];
+        if (material != nullptr && !is_invented(*material)) collect_textures(*material, names);
     }
     return names;
 }
@@ -178,15 +182,12 @@ void append_lost_meshes(Soup& soup) {
 }
 
 void append_materials(const aiScene& scene, Soup& soup, std::vector<std::uint32_t>& numbers) {
-    std::set<std::string> textures;
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
         const aiMaterial* const material = scene.mMaterials[i];
         if (material == nullptr || is_invented(*material)) continue;
         numbers[i] = static_cast<std::uint32_t>(soup.materials.size());
         soup.materials.push_back(material_of(*material));
-        collect_textures(*material, textures);
     }
-    if (!textures.empty()) soup.notes.push_back(note_of_textures(textures));
 }
 
 /// The up axis that an FBX file states, such as "0,0,1"; y, which all else here has, when it states
@@ -274,6 +275,14 @@ Assimp::Importer* new_importer() {
     return all->back();
 }
 
+/// Whether assimp took the file for glTF, by its content, whatever it is called.
+bool was_read_as_gltf(const Assimp::Importer& importer) {
+    const int index = importer.GetPropertyInteger("importerIndex", -1);
+    const aiImporterDesc* const reader =
+        index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+    return reader != nullptr && std::string_view(reader->mName).starts_with("glTF");
+}
+
 const aiScene* import(Assimp::Importer& importer, const Source& source, AssimpFiles::Names& names) {
     // Where there is nothing to show, assimp would draw the bones.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -310,13 +319,10 @@ std::vector<std::string> assimp_extensions() {
 }
 
 std::variant<Soup, std::string> read_with_assimp(const Source& source) {
-    if (is_linear(source.format)) {
-        const std::string extension = unsupported_gltf_extension(bytes_of(source));
-        if (!extension.empty()) {
-            return fmt::format("it requires the extension {}, which is not supported",
-                               one_line(extension));
-        }
-    }
+    const bool is_gltf = is_linear(source.format);
+    GltfDocument document;
+    if (is_gltf) document = read_gltf_document(bytes_of(source));
+    if (!document.fault.empty()) return document.fault;
     auto* const logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     auto* const errors = new ErrorLog;  // the logger deletes it
     logger->attachStream(errors, Assimp::Logger::Err);
@@ -328,16 +334,27 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
         const std::string why = one_line(importer->GetErrorString());
         return refused.empty() ? why : fmt::format("{}; {}", why, list_of(refused));
     }
+    if (!is_gltf && was_read_as_gltf(*importer)) {
+        return "it looks like gltf, so rename it or give --format gltf";
+    }
     if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
     Soup soup = soup_of(*scene, source.format);
+    // Of a glTF file assimp tells only the textures of materials that it knows.
+    const std::set<std::string> textures = is_gltf ? document.images : textures_of(*scene);
+    if (!textures.empty()) soup.notes.insert(soup.notes.begin(), note_of_textures(textures));
     if (source.format == "off" && off_has_face_colors(bytes_of(source))) {
         soup.notes.emplace_back(kNoFaceColors);
     }
     if (!refused.empty()) soup.notes.push_back("the file " + list_of(refused));
-    soup.files.assign(names.opened.begin(), names.opened.end());
-    if (!source.path.empty())
-        for (const std::string& name : textures_of(*scene))
-            soup.files.push_back(path_beside(source.path, name));
+    soup.files.assign(names.asked_for.begin(), names.asked_for.end());
+    if (source.path.empty()) return soup;
+    const std::filesystem::path folder = std::filesystem::path(source.path).parent_path();
+    for (const auto& named : {textures_of(*scene), document.files}) {
+        for (const std::string& name : named) {
+            const std::vector<std::string> places = places_of(folder, name);
+            soup.files.insert(soup.files.end(), places.begin(), places.end());
+        }
+    }
     return soup;
 }
 

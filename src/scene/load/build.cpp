@@ -133,8 +133,8 @@ Status SceneBuilder::check_memory(std::uint64_t more_triangles, const Placement&
                                 scene_.colors.size() * (sizeof(scene_.colors[0]) + sizeof(Corners));
     if (bytes <= memory_limit_) return success();
     return Error{ErrorKind::bad_input,
-                 fmt::format("{}: {} triangles take more than {} MiB of memory; raise the memory "
-                             "limit or use a simpler model",
+                 fmt::format("{}: {} triangles take more than {} MiB of memory; use a simpler "
+                             "model",
                              placement.file, triangles, memory_limit_ >> 20)};
 }
 
@@ -336,12 +336,16 @@ Status SceneBuilder::place_vertex(const Instance& instance, std::uint32_t vertex
     }
     const glm::dvec3 stored = mesh.position(vertex);
     const glm::dvec3 position = instance.placed(stored);
-    const char* fault = fault_of(stored);
-    if (fault == nullptr) fault = fault_of(position);
+    const char* const own_fault = fault_of(stored);
+    const char* const fault = own_fault != nullptr ? own_fault : fault_of(position);
     if (fault != nullptr) {
-        return Error{ErrorKind::bad_input,
-                     fmt::format("{}: vertex {} of object '{}' has {}; repair or rescale the model",
-                                 instance.placement.file, vertex, instance.name, fault)};
+        return Error{
+            ErrorKind::bad_input,
+            fmt::format("{}: vertex {} of object '{}' has {}; {}", instance.placement.file, vertex,
+                        instance.name, fault,
+                        own_fault != nullptr ? "repair or rescale the model"
+                                             : "it comes from the transforms of the object; use "
+                                               "smaller numbers there")};
     }
     if (!mesh.positions.empty()) largest_float_ = std::max(largest_float_, largest_of(stored));
     placed_positions_[vertex] = joiner.add(position);

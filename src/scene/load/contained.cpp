@@ -142,16 +142,16 @@ int wait_for_status(pid_t child) {
 Error out_of_time(const ChildLimits& limits, const std::string& name) {
     return {
         ErrorKind::bad_input,
-        fmt::format("{}: reading it took longer than {:g} s; raise the time limit if the file is "
-                    "to be trusted",
+        fmt::format("{}: reading it took longer than {:g} s; use a smaller or repaired file, or "
+                    "convert it to another format",
                     name, limits.seconds)};
 }
 
 Error out_of_memory(const ChildLimits& limits, const std::string& name) {
     return {
         ErrorKind::bad_input,
-        fmt::format("{}: reading it takes more than {} MiB of memory; raise the memory limit if "
-                    "the file is to be trusted",
+        fmt::format("{}: reading it takes more than {} MiB of memory; use a smaller or repaired "
+                    "file, or convert it to another format",
                     name, limits.memory_bytes >> 20)};
 }
 

@@ -28,9 +28,7 @@ Error refused(const std::string& name, int error) {
 
 Error too_large(const std::string& name, std::size_t limit) {
     return {ErrorKind::bad_input,
-            fmt::format("{}: more than {} MiB; use a smaller model or raise the "
-                        "limit on file size",
-                        name, limit >> 20)};
+            fmt::format("{}: more than {} MiB; use a smaller model", name, limit >> 20)};
 }
 
 /// Whether what statfs() tells is a file system whose files the kernel makes up.

@@ -20,6 +20,9 @@ std::string joined(std::initializer_list<std::string_view> words) {
     return text;
 }
 
+/// What a message about a file begins with.
+std::string beginning_with(const std::string& name) { return name.empty() ? "" : name + ": "; }
+
 /// Notices keys that stand twice in one object; JSON leaves their meaning open.
 class KeyWatch {
 public:
@@ -115,6 +118,11 @@ std::string JsonValue::only_key() const {
 }
 
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name) {
+    // The parser takes this byte for the end of the text.
+    if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        return Error{ErrorKind::bad_input, fmt::format("{}not valid JSON: byte {} is NUL",
+                                                       beginning_with(name), nul + 1)};
+    }
     KeyWatch watch;
     try {
         return nlohmann::json::parse(
@@ -128,13 +136,14 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
         std::string_view what = exception.what();
         what.remove_prefix(std::min(what.size(), what.find("] ") + 2));
         return Error{ErrorKind::bad_input,
-                     fmt::format("{}: not valid JSON: {}", name, one_line(what))};
+                     fmt::format("{}not valid JSON: {}", beginning_with(name), one_line(what))};
     }
 }
 
 Error json_error(const std::string& name, const JsonFault& fault) {
     const std::string where = fault.path.empty() ? "" : fault.path + ": ";
-    return {ErrorKind::bad_input, fmt::format("{}: {}{}", name, where, fault.problem)};
+    return {ErrorKind::bad_input,
+            fmt::format("{}{}{}", beginning_with(name), where, fault.problem)};
 }
 
 }  // namespace sightline::load

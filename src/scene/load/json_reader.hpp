@@ -56,10 +56,11 @@ private:
     std::string path_;
 };
 
-/// Parses a document in which no object has a key twice. `name` is the file in messages.
+/// Parses a document without NUL bytes in which no object has a key twice. `name` is the file in
+/// messages; "" for messages without one.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name);
 
-/// "FILE: PATH: PROBLEM" as an error.
+/// "FILE: PATH: PROBLEM" as an error; without the file if that is "".
 [[nodiscard]] Error json_error(const std::string& name, const JsonFault& fault);
 
 }  // namespace sightline::load

@@ -33,13 +33,18 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Texts in UTF-16 are left to assimp.
-bool is_utf16(std::string_view bytes) {
-    return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+/// An error when the bytes are a text in UTF-16, which our readers can't read. A binary STL file
+/// may begin with any bytes.
+Status check_encoding(std::string_view bytes, const std::string& name, std::string_view format) {
+    const bool for_us = format == "json" || has_own_reader(format);
+    if (!for_us || !is_utf16(bytes) || sniff_format(bytes, bytes.size()) == format) {
+        return success();
+    }
+    return bad_input(fmt::format("{}: it {}", name, kUtf16Reason));
 }
 
 Result<Soup> read_soup(const Source& source, const LoadOptions& options) {
-    if (has_own_reader(source.format) && !is_utf16(text_of(source.bytes))) {
+    if (has_own_reader(source.format)) {
         const ReadContext context(source.name, source.path, options.time_limit_seconds,
                                   options.memory_limit_bytes, options.allowed_paths);
         return read_own_format(source.format, text_of(source.bytes), context);
@@ -152,6 +157,7 @@ Status Loader::add_path(const std::string& path) {
 Status Loader::add_bytes(std::span<const std::byte> bytes, const std::string& name,
                          const std::string& format) {
     if (bytes.empty()) return bad_input(fmt::format("{}: it is empty; give it a model", name));
+    if (Status fits = check_encoding(text_of(bytes), name, format); !fits) return fits;
     if (format == "json") return add_scene(text_of(bytes), name, {});
     return add_source({name, "", format, bytes, options_.allowed_paths}, placement_of(name));
 }
@@ -167,6 +173,7 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     Result<std::vector<std::byte>> bytes = whole ? file->read_all() : file->read_beginning(1);
     if (!bytes) return bytes.error();
     if (bytes->empty()) return bad_input(fmt::format("{}: it is empty; give it a model", path));
+    if (Status fits = check_encoding(text_of(*bytes), path, format); !fits) return fits;
     if (is_scene) {
         Status added = add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
         if (added || added.error().kind != ErrorKind::bad_input) return added;
@@ -202,7 +209,12 @@ Status Loader::add_source(Source source, const Placement& placement,
 }
 
 Status Loader::check_input(const std::string& path, const std::string& model) {
-    if (outputs_.empty() || !outputs_.contains(whole_path(path))) return success();
+    // Models name many files that are not there, for which the first test is enough.
+    std::error_code ignored;
+    if (outputs_.empty() || !std::filesystem::is_regular_file(path, ignored) ||
+        !outputs_.contains(whole_path(path))) {
+        return success();
+    }
     return Error{ErrorKind::bad_option,
                  fmt::format("'{}' is an input{}, which would be overwritten; choose another name "
                              "for the output",

@@ -10,11 +10,15 @@
 #include "scene/load/input.hpp"
 #include "scene/load/scan.hpp"
 #include "scene/load/text.hpp"
+#include "scene/load/texture_names.hpp"
 
 namespace sightline::load {
 namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{64} << 20;
+
+/// Memory that a name in a set takes beside its characters.
+constexpr std::size_t kBytesPerName = 80;
 
 /// Kd of a material that does not state it, as a display colour.
 constexpr float kDefaultDiffuse = 0.6f;
@@ -50,16 +54,28 @@ void apply_line(const char* p, Material& material) {
 /// Whether a line names a texture: map_Kd and its like, and what older programs write.
 bool names_texture(const char* p) {
     constexpr std::array kKeywords = {"bump", "disp", "decal", "refl", "norm"};
+    constexpr std::string_view kMap = "map";
     const std::string_view first(p, static_cast<std::size_t>(skip_word(p) - p));
-    return first.starts_with("map_") || std::ranges::any_of(kKeywords, [&](const char* word) {
-               return starts_with_word(p, word);
-           });
+    const auto same = [](char lower, char c) { return c == lower || c == lower - 'a' + 'A'; };
+    const bool is_map = first.size() > kMap.size() && first[kMap.size()] == '_' &&
+                        std::equal(kMap.begin(), kMap.end(), first.begin(), same);
+    return is_map || std::ranges::any_of(
+                         kKeywords, [&](const char* word) { return starts_with_word(p, word); });
 }
 
-/// The name of the file stands after its options.
-std::string_view last_word(std::string_view line) {
-    const std::size_t blank = line.find_last_of(" \t");
-    return blank == std::string_view::npos ? line : line.substr(blank + 1);
+/// The rest of a line, and of the next ones while each is continued by a backslash. `end` is that
+/// of the text.
+std::string rest_of_statement(const char* p, const char* end) {
+    constexpr int kMostLines = 16;
+    std::string rest(rest_of_line(p));
+    for (int line = 1; line < kMostLines && rest.ends_with('\\'); ++line) {
+        p = skip_to_line_end(p);
+        p += *p == '\r' && p + 1 < end && p[1] == '\n' ? 2 : 1;
+        if (p >= end) break;
+        rest.back() = ' ';
+        rest += rest_of_line(p);
+    }
+    return rest;
 }
 
 }  // namespace
@@ -105,9 +121,11 @@ ObjMaterials::Outcome ObjMaterials::load_named(std::string_view name) {
     std::string portable(name);
     std::ranges::replace(portable, '\\', '/');
     const std::filesystem::path folder = std::filesystem::path(context_.path()).parent_path();
+    const bool quoted = name.size() > 2 && name.starts_with('"') && name.ends_with('"');
     Outcome outcome = Outcome::missing;
     for (const std::string_view candidate :
-         {name, std::string_view(portable), last_component(portable)}) {
+         {name, std::string_view(portable), last_component(portable),
+          quoted ? name.substr(1, name.size() - 2) : std::string_view()}) {
         if (candidate.empty()) continue;
         const Outcome here = load_file(folder / candidate);
         if (here == Outcome::read) return here;
@@ -121,8 +139,10 @@ ObjMaterials::Outcome ObjMaterials::load_file(const std::filesystem::path& file)
         case NamedFiles::Verdict::missing:
             return Outcome::missing;
         case NamedFiles::Verdict::outside:
+            refused_.insert(file.string());
             return Outcome::outside;
         case NamedFiles::Verdict::special:
+            refused_.insert(file.string());
             return Outcome::unreadable;
         case NamedFiles::Verdict::readable:
             break;
@@ -130,13 +150,22 @@ ObjMaterials::Outcome ObjMaterials::load_file(const std::filesystem::path& file)
     std::error_code error;
     const std::string real = std::filesystem::canonical(file, error).string();
     if (error) return Outcome::missing;
-    if (!files_.insert(real).second) return Outcome::read;
+    if (files_.contains(real)) return Outcome::read;
+    refused_.insert(real);  // until it is read
     const Result<InputFile> input = InputFile::open(real, kLargestFile);
     if (!input) return Outcome::unreadable;
     const Result<std::vector<std::byte>> bytes = input->read_all();
     if (!bytes) return Outcome::unreadable;
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    refused_.erase(real);
+    files_.insert(real);
+    if (is_utf16(text)) {
+        note(file.filename().string(), Outcome::utf16);
+        return Outcome::read;
+    }
     bytes_ += bytes->size();
-    parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    folder_ = file.parent_path();
+    parse(text);
     return Outcome::read;
 }
 
@@ -155,9 +184,26 @@ void ObjMaterials::parse(std::string_view text) {
         } else if (current != kNone) {
             apply_line(p, materials_[current]);
             if (starts_with_word(p, "map_kd")) textured_[current] = true;
-            if (names_texture(p)) textures_.emplace(last_word(rest_of_line(skip_word(p))));
         }
+        if (names_texture(p)) add_texture(rest_of_statement(skip_word(p), end));
         p = skip_to_line_end(p) + 1;
+    }
+}
+
+/// Programs disagree on whether a name is relative to the MTL file or to the OBJ file.
+void ObjMaterials::add_texture(const std::string& statement) {
+    const std::vector<std::string> names = names_in_map(statement);
+    if (names.empty()) return;
+    textures_.insert(names.front());
+    // At the limit load() gives up.
+    if (context_.path().empty() || !context_.check(bytes_)) return;
+    const std::filesystem::path own = std::filesystem::path(context_.path()).parent_path();
+    for (const std::string& name : names) {
+        for (const std::filesystem::path& folder : {folder_, own}) {
+            for (std::string& place : places_of(folder, name)) {
+                if (texture_files_.insert(place).second) bytes_ += kBytesPerName + place.size();
+            }
+        }
     }
 }
 
@@ -181,6 +227,8 @@ std::string_view ObjMaterials::reason(Outcome outcome) const {
             return kOutsideReason;
         case Outcome::unreadable:
             return "is not a file of at most 64 MiB that may be read";
+        case Outcome::utf16:
+            return kUtf16Reason;
         default:
             return "is missing";
     }
@@ -198,8 +246,8 @@ std::vector<std::string> ObjMaterials::notes() const {
 
 std::vector<std::string> ObjMaterials::files() const {
     std::vector<std::string> files(files_.begin(), files_.end());
-    for (const std::string& name : textures_)
-        files.push_back(path_beside(std::string(context_.path()), name));
+    files.insert(files.end(), refused_.begin(), refused_.end());
+    files.insert(files.end(), texture_files_.begin(), texture_files_.end());
     return files;
 }
 

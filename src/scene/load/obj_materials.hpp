@@ -37,17 +37,19 @@ public:
     /// All of them, in order of definition or first use. An opacity of 0 has become 1, and black
     /// grey where a texture was to give the colour.
     [[nodiscard]] std::vector<Material> take();
-    /// Paths of the material libraries that were read and of the textures that they name.
+    /// Paths of the material libraries, those that were not read among them, and of the textures
+    /// that they may name.
     [[nodiscard]] std::vector<std::string> files() const;
     /// What had no effect: files that are missing, textures. See Soup::notes.
     [[nodiscard]] std::vector<std::string> notes() const;
 
 private:
-    enum class Outcome { read, missing, outside, unreadable };
+    enum class Outcome { read, missing, outside, unreadable, utf16 };
 
     Outcome load_named(std::string_view name);
     Outcome load_file(const std::filesystem::path& file);
     Outcome load_words(std::string_view names);
+    void add_texture(const std::string& statement);
     void note(std::string_view name, Outcome outcome);
     [[nodiscard]] std::string_view reason(Outcome outcome) const;
 
@@ -56,10 +58,13 @@ private:
     std::vector<bool> textured_;  ///< whether a material has a texture for its colour
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
     std::set<std::string, std::less<>> lines_;  ///< what mtllib lines have named so far
-    std::set<std::string> files_;               ///< MTL files that were read, without links
+    std::set<std::string> files_;               ///< MTL files that were opened, without links
     std::uint64_t bytes_ = 0;                   ///< in those
     std::map<std::string, Outcome> not_read_;
-    std::set<std::string> textures_;
+    std::set<std::string> refused_;        ///< paths of MTL files that may not be read
+    std::filesystem::path folder_;         ///< of the MTL file that is being read
+    std::set<std::string> textures_;       ///< for messages
+    std::set<std::string> texture_files_;  ///< paths
 };
 
 }  // namespace sightline::load

@@ -67,9 +67,11 @@ bool take_line(const std::vector<std::string_view>& words, PlyHeader& header) {
         header.elements.push_back(std::move(element));
         return true;
     }
-    // As MeshLab writes it.
-    if (n == 3 && words[0] == "comment" && words[1] == "TextureFile")
-        header.textures.emplace(words[2]);
+    // As MeshLab writes it. The name may hold blanks.
+    if (n > 2 && words[0] == "comment" && words[1] == "TextureFile") {
+        const char* const end = words.back().data() + words.back().size();
+        header.textures.emplace_back(words[2].data(), end);
+    }
     if (words[0] != "property") return true;  // a comment, or what somebody took for one
     if (header.elements.empty()) return false;
     const bool list = n == 5 && words[1] == "list";

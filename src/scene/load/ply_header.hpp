@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,8 +33,8 @@ struct PlyHeader {
     enum class Format { ascii, binary_little_endian, binary_big_endian };
     Format format = Format::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;            ///< of the header, in bytes
-    std::set<std::string> textures;  ///< files that comments name
+    std::size_t size = 0;               ///< of the header, in bytes
+    std::vector<std::string> textures;  ///< what comments name as such: the rest of their line
 };
 
 /// Errors: no PLY file, or a header that is cut off or can't be understood.

@@ -11,12 +11,14 @@
 #include <bit>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/load/ply_header.hpp"
 #include "scene/load/ply_values.hpp"
 #include "scene/load/ply_vertex.hpp"
 #include "scene/load/text.hpp"
+#include "scene/load/texture_names.hpp"
 
 namespace sightline::load {
 namespace {
@@ -355,7 +357,9 @@ Result<Soup> PlyReader<Values>::read() {
         if (Status read = read_element(element); !read) return read.error();
     }
     if (Status fits = context_.check(memory_of(mesh_)); !fits) return fits.error();
-    if (!header_.textures.empty()) soup_.notes.push_back(note_of_textures(header_.textures));
+    TextureNames textures = textures_in(header_.textures, context_.path());
+    if (!textures.names.empty()) soup_.notes.push_back(note_of_textures(textures.names));
+    soup_.files = std::move(textures.places);
     if (!drawn) soup_.ignored_primitives += vertices_;  // a cloud of points
     if (!mesh_.polygon_sizes.empty()) {
         soup_.meshes.push_back(std::move(mesh_));

@@ -21,15 +21,15 @@ ReadContext::ReadContext(std::string name, std::string path, double seconds,
 Status ReadContext::check(std::uint64_t bytes_of_memory) const {
     if (bytes_of_memory > memory_bytes_) {
         return Error{ErrorKind::bad_input,
-                     fmt::format("{}: reading it takes more than {} MiB of memory; raise the "
-                                 "memory limit if the file is to be trusted",
+                     fmt::format("{}: reading it takes more than {} MiB of memory; use a "
+                                 "smaller or repaired file",
                                  name_, memory_bytes_ >> 20)};
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
     if (taken.count() > seconds_) {
         return Error{ErrorKind::bad_input,
-                     fmt::format("{}: reading it took longer than {:g} s; raise the time limit if "
-                                 "the file is to be trusted",
+                     fmt::format("{}: reading it took longer than {:g} s; use a smaller or "
+                                 "repaired file",
                                  name_, seconds_)};
     }
     return success();

@@ -67,6 +67,15 @@ glm::dmat4 transform(const JsonValue& value) {
     return m;
 }
 
+bool is_finite(const glm::dmat4& m) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(m[column][row])) return false;
+        }
+    }
+    return true;
+}
+
 /// Whether a transform of coordinates up to 1e30 stays far from overflow.
 bool is_moderate(const glm::dmat4& m) {
     for (int column = 0; column < 4; ++column) {
@@ -140,7 +149,10 @@ ModelEntry model(const JsonValue& value) {
         path.fail("a scene file cannot hold another one; list its models instead");
     }
     value.if_has("name", [&](const JsonValue& v) { entry.name = v.text(); });
-    value.if_has("transform", [&](const JsonValue& v) { entry.transform = transform(v); });
+    value.if_has("transform", [&](const JsonValue& v) {
+        entry.transform = transform(v);
+        if (!is_finite(entry.transform)) v.fail("its numbers overflow; use smaller ones");
+    });
     value.if_has("frames", [&](const JsonValue& v) { entry.frames = frames(v); });
     value.if_has("material", [&](const JsonValue& v) { entry.material = material(v); });
     return entry;

@@ -1,7 +1,5 @@
 #include "scene/load/text.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -52,6 +50,16 @@ std::string_view without_mark(std::string_view text) {
     return text;
 }
 
+bool is_utf16(std::string_view text) {
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return true;
+    if (text.size() < 4) return false;
+    const auto zeros = [&](std::size_t first) {
+        return text[first] == '\0' && text[first + 2] == '\0' && text[1 - first] != '\0' &&
+               text[3 - first] != '\0';
+    };
+    return zeros(0) || zeros(1);
+}
+
 std::string_view last_component(std::string_view path) {
     return path.substr(path.find_last_of("/\\") + 1);
 }
@@ -82,18 +90,6 @@ std::string shortened(std::string_view text) {
     std::size_t end = kLongest - kMore.size();
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // of UTF-8
     return std::string(text.substr(0, end)).append(kMore);
-}
-
-std::string path_beside(const std::string& model, std::string_view name) {
-    std::string portable(name);
-    std::ranges::replace(portable, '\\', '/');
-    return (std::filesystem::path(model).parent_path() / portable).string();
-}
-
-std::string note_of_textures(const std::set<std::string>& names) {
-    if (names.empty()) return {};
-    return fmt::format("textures are not drawn: {} ('{}'{})", names.size(),
-                       one_line(*names.begin()), names.size() > 1 ? ", ..." : "");
 }
 
 }  // namespace sightline::load

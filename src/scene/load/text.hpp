@@ -1,7 +1,6 @@
 // Text from foreign files, made fit for messages and outputs.
 #pragma once
 
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -12,6 +11,13 @@ namespace sightline::load {
 
 /// The text without the byte order mark (UTF-8) that some programs begin it with.
 [[nodiscard]] std::string_view without_mark(std::string_view text);
+
+/// Whether the text is in UTF-16, by its mark or by the zeros that ASCII has in it.
+[[nodiscard]] bool is_utf16(std::string_view text);
+
+/// Why such a text is not read, and the way out; follows a name in a message.
+inline constexpr std::string_view kUtf16Reason =
+    "is in UTF-16, which is not read (save it as UTF-8)";
 
 /// The last component of a path of any system.
 [[nodiscard]] std::string_view last_component(std::string_view path);
@@ -28,14 +34,7 @@ namespace sightline::load {
 /// As much of a text that a user gave as a message repeats: 80 bytes, whole characters.
 [[nodiscard]] std::string shortened(std::string_view text);
 
-/// Where a file lies that a model names: its name may be relative to the model's folder and have
-/// the slashes of Windows.
-[[nodiscard]] std::string path_beside(const std::string& model, std::string_view name);
-
 /// What is noted of a file whose faces have colours.
 inline constexpr std::string_view kNoFaceColors = "colours of faces are not read";
-
-/// What is noted of the textures of a file, by their names; "" when there are none.
-[[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);
 
 }  // namespace sightline::load
