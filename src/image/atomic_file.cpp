@@ -13,6 +13,8 @@
 #include <system_error>
 #include <utility>
 
+#include "image/write_all.hpp"
+
 namespace sightline {
 namespace {
 
@@ -147,14 +149,8 @@ Status AtomicFile::fail(int error_number) {
 }
 
 Status AtomicFile::write_through(const char* data, std::size_t size) {
-    while (size > 0) {
-        const ssize_t written = ::write(descriptor_, data, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return fail(errno);
-        data += written;
-        size -= static_cast<std::size_t>(written);
-    }
-    return success();
+    const int error_number = write_all(descriptor_, data, size);
+    return error_number == 0 ? success() : fail(error_number);
 }
 
 Status AtomicFile::flush() {
