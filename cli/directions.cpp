@@ -1,7 +1,6 @@
 #include "directions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -38,11 +37,8 @@ std::optional<glm::dvec3> direction_of(const std::vector<std::string_view>& word
         if (!value) return std::nullopt;
         direction[k] = *value;
     }
-    const double largest =
-        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (largest == 0) return std::nullopt;
-    constexpr double kLarge = 1e100;
-    return largest > kLarge || largest < 1 / kLarge ? direction / largest : direction;
+    if (direction == glm::dvec3(0)) return std::nullopt;
+    return direction;
 }
 
 }  // namespace

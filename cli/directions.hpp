@@ -10,7 +10,7 @@
 namespace sightline::cli {
 
 /// One direction x,y,z a line; blanks instead of commas will do, and '#' begins a comment. None of
-/// them is 0,0,0. Very large and very small ones are scaled to what can be computed with.
+/// them is 0,0,0.
 [[nodiscard]] Result<std::vector<glm::dvec3>> read_directions(const std::string& path);
 
 }  // namespace sightline::cli

@@ -106,6 +106,11 @@ std::optional<Error> check_place(const OutputPlace& output) {
     if (output.path == "-") return std::nullopt;
     std::error_code ignored;
     const fs::path path(output.path), folder = folder_of(path);
+    std::error_code gone;
+    if (path.is_relative() && fs::current_path(gone).empty()) {
+        return failure("{}: the working folder, where '{}' would lie, is gone; change to another",
+                       output.option, output.path);
+    }
     if (fs::is_directory(path, ignored)) {
         return failure("{}: '{}' is a folder; name a file in it", output.option, output.path);
     }

@@ -6,6 +6,7 @@
 
 #include "directions.hpp"
 #include "errors.hpp"
+#include "math/moderate.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -202,8 +203,8 @@ double true_area(const Scene& scene, std::uint32_t t) {
 
 /// What is up does not matter for areas, but it must not be the gaze.
 glm::dvec3 up_for(const glm::dvec3& direction) {
-    const glm::dvec3 d =
-        direction / std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    glm::dvec3 d = math::moderate(direction);
+    d /= std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     return std::abs(d.x) + std::abs(d.z) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
 }
 

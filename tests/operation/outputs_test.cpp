@@ -138,7 +138,7 @@ TEST_F(OutputFiles, StandardOutputIsAPlaceLikeOthers) {
     write("sun.txt", "0,0,-1\n");
     fs::create_hard_link(folder_ / "m.obj", folder_ / "link.obj");
     const std::string png = " -o - --output-format png ";
-    for (const std::string command :
+    for (const std::string& command :
          {"render m.obj" + png + "--ids ids.npy > ids.npy", "render m.obj" + png + ">> m.obj",
           "draw m.obj" + png + "1<> m.obj", std::string("visible m.obj 1<> m.obj"),
           std::string("info link.obj >> m.obj"),
@@ -155,7 +155,7 @@ TEST_F(OutputFiles, StandardOutputIsAPlaceLikeOthers) {
         EXPECT_EQ(read("m.obj"), kCube);
         EXPECT_EQ(read("sun.txt"), "0,0,-1\n");
     }
-    for (const std::string command :
+    for (const std::string& command :
          {"render m.obj" + png + "> a.png", std::string("visible m.obj >> list.csv"),
           std::string("render m.obj -o /dev/stdout --output-format png > a.png"),
           std::string("render m.obj -o b.png > b.png"),
