@@ -115,10 +115,10 @@ TEST_F(Inherited, PipesThatDoNotBlockAreWaitedFor) {
     std::array<int, 2> ends{};
     ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK), 0);
     const pid_t program = spawn({"info", "-", "--format", "obj"}, ends[0], 0);
-    close(ends[0]);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     EXPECT_EQ(::write(ends[1], kCube.data(), kCube.size()), static_cast<ssize_t>(kCube.size()));
     close(ends[1]);
+    close(ends[0]);
     EXPECT_EQ(status_of(program), 0) << read_file(streams_ / "err");
 }
 
