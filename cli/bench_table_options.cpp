@@ -63,6 +63,7 @@ std::optional<Output> read_svg(OptionReader& reader) {
     }
     Output output{{"-o", *path}};
     check_outputs(reader, {&output, 1}, {});
+    check_report(reader, {&output.path, 1});
     return output;
 }
 

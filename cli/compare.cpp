@@ -50,7 +50,8 @@ Result<CompareOptions> read_options(const Arguments& arguments) {
     options.difference = read_output<ImageFormat>(reader, "--difference", kDifferenceFormats);
     if (options.difference) {
         check_outputs(reader, {&*options.difference, 1}, options.models.paths);
-        options.models.options.outputs = {options.difference->path};
+        check_report(reader, {&options.difference->path, 1});
+        options.models.options.outputs.push_back(options.difference->path);
     }
     if (options.difference && options.difference->path == "-") {
         reader.fail(wrong_use("--difference: standard output holds the table; name a file"));

@@ -81,7 +81,7 @@ Result<DrawCommandOptions> read_options(const Arguments& arguments) {
     options.trace.threads = options.common.threads;
     options.drawing =
         read_drawing_output(reader, options.resolution, options.common, options.models.paths);
-    options.models.options.outputs = {options.drawing.file.path};
+    options.models.options.outputs.push_back(options.drawing.file.path);
     options.trace.hidden = options.drawing.hidden;
     if (reader.error()) return *reader.error();
     return options;

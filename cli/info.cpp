@@ -243,7 +243,12 @@ Result<int> run(const Arguments& arguments) {
     notes.warn_of_files(*scene);
     notes.warn_of_options(arguments, idle_camera_options({{camera->projection}}));
     ViewNotes view;
-    view.add({subject_of(*scene), merge_cameras(*scene, options->camera), *camera, {}});
+    ProjectCounts counts;
+    counts.triangles = scene->triangle_count();
+    counts.degenerate = scene->counts.degenerate_triangles;
+    const bool shows_nothing = counts.degenerate == counts.triangles && scene->quadrics.empty();
+    view.add({subject_of(*scene), merge_cameras(*scene, options->camera), *camera, counts,
+              shows_nothing});
     view.print(notes, "the picture is blank");
     progress.clear();
     if (options->common.stats) {

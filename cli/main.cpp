@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "errors.hpp"
 #include "image/temporary_file.hpp"
+#include "math/thread_failure.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "streams.hpp"
@@ -82,7 +83,8 @@ Result<int> run_guarded(const Words& words) {
             "not enough memory; choose a smaller --resolution or --samples, a smaller model, or, "
             "where surfaces cross one another, --algorithm zbuffer");
     } catch (const std::exception& error) {
-        return failure("unexpected failure: {}", error.what());
+        if (const auto text = thread_failure(error)) return failure("{}", *text);
+        return failure("unexpected failure: {}; try again or report it", error.what());
     }
 }
 

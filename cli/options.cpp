@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "signals.hpp"
 #include "suggest.hpp"
 
@@ -24,6 +25,8 @@ constexpr Range kAnyNumber{-kInfinity, kInfinity};
 constexpr Range kPositive{0, kInfinity, true, true};
 /// The largest value of --weld: with a larger one, shapes that can be seen would change.
 constexpr double kLargestWeld = 0.01;
+/// Names the file that standard output goes into, if it is one.
+constexpr const char* kStandardOutput = "/proc/self/fd/1";
 
 constexpr std::array kCameraRows = {
     Option{"--eye", "X,Y,Z", "where the camera stands"},
@@ -189,9 +192,13 @@ CommonOptions read_common(OptionReader& reader) {
                                      "a number of seconds above 0, as in --time-limit 60");
     if (threads) {
         common.threads = static_cast<int>(*threads);
-        // Holds for the whole run, the stages of the library that take no number included.
-        static const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
-                                                 static_cast<std::size_t>(*threads));
+        // Holds for the whole run, the stages of the library that take no number included. It is
+        // never destroyed: that would start threads, when all is done and where none may be left.
+        static const tbb::global_control* const control =
+            std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                  static_cast<std::size_t>(*threads))
+                .release();
+        static_cast<void>(control);
     }
     if (limit && !reader.error()) start_time_limit(*limit);
     return common;
@@ -330,6 +337,8 @@ Models read_models(OptionReader& reader, bool required) {
     if (inputs == 1 && models.options.format.empty()) {
         reader.fail(wrong_use("the model '-' (standard input) needs --format, as in --format obj"));
     }
+    check_report(reader, models.paths);
+    models.options.outputs = {kStandardOutput};  // for the files that models name
     return models;
 }
 

@@ -4,6 +4,7 @@
 #include "outputs.hpp"
 
 #include <ImfThreading.h>
+#include <sys/stat.h>
 #include <tbb/info.h>
 #include <unistd.h>
 
@@ -70,10 +71,46 @@ bool is_device(const std::string& path) {
     return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
+/// Device and number of the file on a disk that a path names; "-" is a standard stream. Nothing
+/// where there is no such file, but a pipe or a device.
+std::optional<std::pair<dev_t, ino_t>> file_number(const std::string& path, int stream) {
+    struct stat info {};
+    const int failed = path == "-" ? fstat(stream, &info) : stat(path.c_str(), &info);
+    if (failed != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
+    return std::pair(info.st_dev, info.st_ino);
+}
+
+/// Whether standard output goes into a file that is called `path`; "-" is standard input.
+bool takes_standard_output(const std::string& path) {
+    const auto out = file_number("-", STDOUT_FILENO);
+    return out && out == file_number(path, STDIN_FILENO);
+}
+
+/// Whether an output by that name overwrites what is read by the other.
+bool overwrites(const std::string& output, const std::string& input) {
+    if (output == "-") return takes_standard_output(input);
+    if (is_device(output)) return false;
+    if (input != "-") return identity(input) == identity(output);
+    const auto in = file_number("-", STDIN_FILENO);
+    return in && in == file_number(output, STDOUT_FILENO);
+}
+
+/// Whether two outputs, not both "-", end up in one file.
+bool is_same_place(const std::string& a, const std::string& b) {
+    if (a == "-") return takes_standard_output(b);
+    if (b == "-") return takes_standard_output(a);
+    return !is_device(a) && identity(a) == identity(b);
+}
+
 std::optional<Error> check_place(const OutputPlace& output) {
     if (output.path == "-") return std::nullopt;
     std::error_code ignored;
     const fs::path path(output.path), folder = folder_of(path);
+    std::error_code gone;
+    if (path.is_relative() && fs::current_path(gone).empty()) {
+        return failure("{}: the working folder, where '{}' would lie, is gone; change to another",
+                       output.option, output.path);
+    }
     if (fs::is_directory(path, ignored)) {
         return failure("{}: '{}' is a folder; name a file in it", output.option, output.path);
     }
@@ -158,31 +195,43 @@ template std::optional<VectorOutput> read_output(OptionReader&, std::string_view
 
 void check_output(OptionReader& reader, const OutputPlace& output,
                   std::span<const std::string> inputs) {
-    const bool to_stream = output.path == "-" || is_device(output.path);
     for (const std::string& input : inputs) {
-        if (to_stream || input == "-" || identity(input) != identity(output.path)) continue;
+        if (!overwrites(output.path, input)) continue;
         reader.fail(
             wrong_use("{}: '{}' is an input, which would be overwritten; choose another "
                       "name",
-                      output.option, output.path));
+                      output.option, output.path == "-" ? input : output.path));
+    }
+    if (reader.arguments().has("--json") && output.path != "-") {
+        check_report(reader, {&output.path, 1});
+        check_report(reader, inputs);
     }
     if (auto error = check_place(output)) reader.fail(std::move(*error));
+}
+
+void check_report(OptionReader& reader, std::span<const std::string> files) {
+    for (const std::string& file : files) {
+        if (!takes_standard_output(file)) continue;
+        reader.fail(
+            wrong_use("standard output goes into '{}', which this run reads or writes "
+                      "itself; send it elsewhere",
+                      file));
+    }
 }
 
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,
                    std::span<const std::string> inputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Output& output = outputs[i];
-        const bool to_stream = output.path == "-" || is_device(output.path);
         for (std::size_t j = 0; j < i; ++j) {
-            if (output.path == "-" && outputs[j].path == "-") {
+            const Output& other = outputs[j];
+            if (output.path == "-" && other.path == "-") {
                 reader.fail(wrong_use("{} and {} can't both go to standard output; give one a file",
-                                      outputs[j].option, output.option));
-            } else if (!to_stream && outputs[j].path != "-" &&
-                       identity(output.path) == identity(outputs[j].path)) {
-                reader.fail(
-                    wrong_use("{} and {} name the same file '{}'; give them different names",
-                              outputs[j].option, output.option, output.path));
+                                      other.option, output.option));
+            } else if (is_same_place(output.path, other.path)) {
+                reader.fail(wrong_use(
+                    "{} and {} name the same file '{}'; give them different names", other.option,
+                    output.option, output.path == "-" ? other.path : output.path));
             }
         }
         check_output(reader, output, inputs);

@@ -33,10 +33,14 @@ template <class Format>
 std::optional<OutputOf<Format>> read_output(OptionReader& reader, std::string_view option,
                                             std::span<const Format> allowed);
 
-/// An output that is an input, a missing folder, a folder without permission: reported before any
-/// work.
+/// An output that is an input or is in the way of --json, a missing folder, a folder without
+/// permission: reported before any work.
 void check_output(OptionReader& reader, const OutputPlace& output,
                   std::span<const std::string> inputs);
+
+/// A report on standard output that goes into one of the files ("-": into what standard input comes
+/// from) that the run reads or writes.
+void check_report(OptionReader& reader, std::span<const std::string> files);
 
 /// check_output() for each, and two outputs in one place.
 void check_outputs(OptionReader& reader, std::span<const Output> outputs,

@@ -32,8 +32,11 @@ void read_shading(OptionReader& reader, RenderOptions& options) {
             .value_or(options.crease_angle);
     options.background = reader.color("--background").value_or(options.background);
     options.opacity = read_opacity(reader);
-    for (const std::string& name : reader.arguments().values("--holdout"))
+    for (const std::string& name : reader.arguments().values("--holdout")) {
+        if (name.empty())
+            reader.fail(wrong_use("--holdout: the name is empty; name a material or an object"));
         options.holdouts.push_back(name);
+    }
 }
 
 void read_layers(OptionReader& reader, RenderOptions& options) {

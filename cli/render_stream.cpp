@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "errors.hpp"
@@ -220,6 +222,12 @@ void read_stream(OptionReader& reader, RenderOptions& options) {
     refuse(std::ranges::any_of(options.outputs, matte), "no matte is kept; leave out --matte");
     refuse(std::ranges::find(options.models.paths, "-") != options.models.paths.end(),
            "standard input can't be read twice; name files");
+    const auto pipe = [](const std::string& path) {
+        std::error_code ignored;
+        return std::filesystem::is_fifo(path, ignored);
+    };
+    refuse(std::ranges::any_of(options.models.paths, pipe),
+           "a pipe can't be read twice; name files");
 }
 
 Result<Streamed> render_stream(const RenderOptions& options, const Notes& notes,

@@ -3,16 +3,16 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "errors.hpp"
+#include "image/write_all.hpp"
 #include "scene/load/text.hpp"
 #include "streams.hpp"
 
@@ -55,6 +55,24 @@ bool is_number(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789.-+e%") == std::string_view::npos;
 }
 
+/// JSON allows the control characters from U+007F on as they are; some terminals obey them.
+std::string with_controls_escaped(const std::string& json) {
+    std::string text;
+    text.reserve(json.size());
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(json[i]);
+        const bool two = byte == 0xc2 && i + 1 < json.size();
+        const unsigned code = two ? static_cast<unsigned char>(json[i + 1]) : byte;
+        if (code < 0x7f || code > 0x9f || (!two && byte != 0x7f)) {
+            text += json[i];
+        } else {
+            text += fmt::format("\\u{:04x}", code);
+            i += two;
+        }
+    }
+    return text;
+}
+
 /// "VmHWM:   1234 kB" of /proc/self/status.
 std::optional<double> high_water_mib() {
     std::ifstream status("/proc/self/status");
@@ -70,7 +88,7 @@ std::optional<double> high_water_mib() {
 
 std::string to_json(const Value& value) {
     const Json json = std::visit(JsonMaker{}, value.data());
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return with_controls_escaped(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::optional<Value::Object> parse_flat_json(std::string_view text) {
@@ -137,10 +155,10 @@ std::string to_grid(const std::vector<std::vector<std::string>>& rows) {
 }
 
 Status print(std::string_view text) {
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-    if (written && std::fflush(stdout) == 0) return success();
+    const int error_number = write_all(STDOUT_FILENO, text.data(), text.size());
+    if (error_number == 0) return success();
     return failure("cannot write to standard output: {}; free some space or write elsewhere",
-                   std::system_category().message(errno));
+                   std::system_category().message(error_number));
 }
 
 Status print_rows(const std::vector<Row>& rows, bool as_table, bool as_json) {

@@ -54,12 +54,17 @@ extern "C" void stop_on_closed_pipe(int) {
     if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) stop(kNobodyReadsStatus, "");
 }
 
+/// The signal comes even if the program that started this one had it blocked.
 void catch_signal(int signal, void (*handler)(int)) {
     struct sigaction action = {};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
     sigfillset(&action.sa_mask);
     sigaction(signal, &action, nullptr);
+    sigset_t caught;
+    sigemptyset(&caught);
+    sigaddset(&caught, signal);
+    sigprocmask(SIG_UNBLOCK, &caught, nullptr);
 }
 
 bool is_ignored(int signal) {
@@ -99,6 +104,7 @@ void install_signal_handlers() {
     catch_signal(SIGPIPE, stop_on_closed_pipe);
     catch_signal(SIGXCPU, stop_on_processor_time);
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGCHLD, SIG_DFL);  // where it is ignored, the end of a child tells nothing
     expect_end_of_processor_time();
 }
 

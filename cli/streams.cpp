@@ -8,6 +8,7 @@
 #include <csignal>
 #include <ctime>
 
+#include "image/write_all.hpp"
 #include "scene/load/text.hpp"
 
 namespace sightline::cli {
@@ -49,12 +50,8 @@ void occupy_closed_streams() {
 
 void tell(std::string_view text) {
     const NoPipeSignal none;
-    while (!text.empty()) {
-        const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return;
-        text.remove_prefix(static_cast<std::size_t>(written));
-    }
+    const int ignored = write_all(STDERR_FILENO, text.data(), text.size());
+    static_cast<void>(ignored);
 }
 
 void tell_line(std::string_view text) { tell("sightline: " + load::clean_text(text) + '\n'); }

@@ -34,6 +34,7 @@ std::optional<std::string_view> closest(std::string_view word,
     std::optional<std::string_view> best;
     std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (const std::string_view candidate : candidates) {
+        if (candidate.empty()) continue;  // what has no name
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < best_distance) {
             best = candidate;

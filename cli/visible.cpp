@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <glm/geometric.hpp>
-#include <iterator>
-#include <sstream>
 
+#include "directions.hpp"
 #include "errors.hpp"
+#include "math/moderate.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "sightline/sightline.hpp"
@@ -33,32 +33,6 @@ struct VisibleOptions {
 
 // -- options -----------------------------------------------------------------------------------
 
-/// One direction x,y,z a line; blanks instead of commas will do. '#' begins a comment.
-std::optional<Error> read_directions(const std::string& path, std::vector<glm::dvec3>& directions) {
-    std::ifstream file(path);
-    if (!file) return failure("--from-directions: '{}' can't be read; check its name", path);
-    std::string line;
-    for (std::size_t number = 1; std::getline(file, line); ++number) {
-        line.resize(std::min(line.find('#'), line.size()));
-        std::ranges::replace(line, ',', ' ');
-        std::istringstream words(line);
-        std::vector<std::string> parts{std::istream_iterator<std::string>(words), {}};
-        if (parts.empty()) continue;
-        glm::dvec3 d(0);
-        bool good = parts.size() == 3;
-        for (std::size_t k = 0; good && k < 3; ++k) {
-            const auto value = parse_number(parts[k]);
-            good = value.has_value();
-            d[static_cast<int>(k)] = value.value_or(0);
-        }
-        if (!good || d == glm::dvec3(0))
-            return failure("{}:{}: not a direction x,y,z other than 0,0,0", path, number);
-        directions.push_back(d);
-    }
-    if (directions.empty()) return failure("{}: no direction in it; write one x,y,z a line", path);
-    return std::nullopt;
-}
-
 Result<VisibleOptions> read_options(const Arguments& arguments) {
     OptionReader reader(arguments);
     VisibleOptions options;
@@ -79,8 +53,12 @@ Result<VisibleOptions> read_options(const Arguments& arguments) {
                     wrong_use("{} would be one more direction; put it into the file of "
                               "--from-directions",
                               other));
-        if (!reader.error())
-            if (auto error = read_directions(*path, options.directions)) reader.fail(*error);
+        check_report(reader, {&*path, 1});
+        if (!reader.error()) {
+            auto directions = read_directions(*path);
+            if (!directions) return directions.error();
+            options.directions = std::move(*directions);
+        }
     }
     if (reader.error()) return *reader.error();
     return options;
@@ -141,8 +119,9 @@ double fraction_of(const FaceArea& area) {
 /// A name that begins like a formula would be computed by a spreadsheet; an apostrophe tells it
 /// that this is text.
 std::string csv_name(const std::string& name) {
-    const bool is_formula = !name.empty() &&
-                            std::string_view("=+-@").find(name.front()) != std::string_view::npos &&
+    const std::size_t first = name.find_first_not_of(' ');
+    const bool is_formula = first != std::string::npos &&
+                            std::string_view("=+-@").find(name[first]) != std::string_view::npos &&
                             !parse_number(name);
     if (!is_formula && name.find_first_of(",\"\r\n") == std::string::npos) return name;
     std::string quoted = is_formula ? "\"'" : "\"";
@@ -224,8 +203,8 @@ double true_area(const Scene& scene, std::uint32_t t) {
 
 /// What is up does not matter for areas, but it must not be the gaze.
 glm::dvec3 up_for(const glm::dvec3& direction) {
-    const glm::dvec3 d =
-        direction / std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    glm::dvec3 d = math::moderate(direction);
+    d /= std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     return std::abs(d.x) + std::abs(d.z) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
 }
 

@@ -8,10 +8,14 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
+
+#include "image/write_all.hpp"
 
 namespace sightline {
 namespace {
@@ -31,7 +35,9 @@ std::string way_out(int error_number, const std::string& path) {
         case ENOTDIR:
             return fmt::format("'{}' is no folder", folder_of(path));
         case ENOENT:
-            return fmt::format("create the folder '{}' first", folder_of(path));
+            return folder_of(path) == "."
+                       ? "the working folder is gone, change to another"
+                       : fmt::format("create the folder '{}' first", folder_of(path));
         case EACCES:
         case EPERM:
         case EROFS:
@@ -42,6 +48,8 @@ std::string way_out(int error_number, const std::string& path) {
             return "free some space or write to another disk";
         case EISDIR:
             return "give the name of a file in that folder";
+        case ENXIO:
+            return "nobody reads that pipe, or there is no such device: start what reads it";
         case EPIPE:
             return "the program that reads the output has gone";
         case ENAMETOOLONG:
@@ -64,6 +72,21 @@ std::string resolved(const std::string& path) {
     return ::realpath(path.c_str(), real.data()) != nullptr ? real.data() : path;
 }
 
+/// Opens a device or a pipe. A pipe is given a second for somebody to open it for reading, who is
+/// waited for without an end otherwise.
+int open_stream(const std::string& path) {
+    constexpr int kTries = 50;
+    constexpr std::chrono::milliseconds kPause(20);
+    int descriptor = -1;
+    for (int i = 0; i < kTries; ++i) {
+        descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        if (descriptor >= 0 || errno != ENXIO) break;
+        std::this_thread::sleep_for(kPause);
+    }
+    if (descriptor >= 0) ::fcntl(descriptor, F_SETFL, O_WRONLY);
+    return descriptor;
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, Access access) {
@@ -76,8 +99,8 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, Access access) {
     file.keep_all_ = is_stream && access == Access::seekable;
     if (!file.keep_all_) file.buffer_.reserve(kBufferSize);
     if (is_stream) {
-        file.descriptor_ = path == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
-                                       : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        file.descriptor_ =
+            path == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_stream(path);
         if (file.descriptor_ < 0) return write_error(path, errno);
         return file;
     }
@@ -147,14 +170,8 @@ Status AtomicFile::fail(int error_number) {
 }
 
 Status AtomicFile::write_through(const char* data, std::size_t size) {
-    while (size > 0) {
-        const ssize_t written = ::write(descriptor_, data, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return fail(errno);
-        data += written;
-        size -= static_cast<std::size_t>(written);
-    }
-    return success();
+    const int error_number = write_all(descriptor_, data, size);
+    return error_number == 0 ? success() : fail(error_number);
 }
 
 Status AtomicFile::flush() {

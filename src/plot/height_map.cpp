@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "math/thread_failure.hpp"
 #include "plot/height_table.hpp"
 #include "scene/load/input.hpp"
 #include "scene/load/text.hpp"
@@ -255,6 +256,7 @@ Result<HeightMap> load_height_map(const std::string& path, const HeightMapOption
         return Error{ErrorKind::io,
                      fmt::format("{}: not enough memory; free some or use a smaller map", path)};
     } catch (const std::exception& exception) {
+        if (const auto text = thread_failure(exception)) return Error{ErrorKind::io, *text};
         return Error{ErrorKind::io, fmt::format("{}: {}; try again or report it", path,
                                                 load::one_line(exception.what()))};
     }

@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "math/coplanar.hpp"
 #include "math/elementary.hpp"
+#include "math/moderate.hpp"
 #include "sightline/scene.hpp"
 #include "view/frames.hpp"
 
@@ -18,6 +21,8 @@ namespace sightline {
 
 namespace {
 
+// What options may say: the squares of such numbers can be computed with.
+constexpr double kLargest = 1e100, kSmallest = 1e-100;
 constexpr double kFitMargin = 1.05;    // of the bounding sphere
 constexpr double kDepthMargin = 1e-3;  // of the depth range, on both sides of near and far
 
@@ -38,8 +43,11 @@ Status check_vectors(const CameraOptions& o) {
     for (const auto& [name, value] : vectors)
         if (*value && !finite(**value))
             return wrong(std::string(name) + " must have three finite numbers x,y,z");
-    if (o.up && glm::length(*o.up) == 0) return wrong("--up must not be 0,0,0: give a direction");
-    if (o.direction && glm::length(*o.direction) == 0)
+    for (const auto& [name, value] : {vectors[0], vectors[1]})
+        if (*value && glm::any(glm::greaterThan(glm::abs(**value), glm::dvec3(kLargest))))
+            return wrong(std::string(name) + " lies too far away: give coordinates up to 1e100");
+    if (o.up && *o.up == glm::dvec3(0)) return wrong("--up must not be 0,0,0: give a direction");
+    if (o.direction && *o.direction == glm::dvec3(0))
         return wrong("--direction must not be 0,0,0: give the direction of the gaze");
     if (o.direction && o.view) return wrong("give --direction or --view, not both");
     if (o.eye && o.target && (o.direction || o.view))
@@ -62,11 +70,17 @@ Status check_numbers(const CameraOptions& o, Resolution resolution) {
     for (const auto& [name, value] : positive)
         if (*value && !(**value > 0 && std::isfinite(**value)))
             return wrong(std::string(name) + " must be a positive number");
+    for (const auto& [name, value] : {std::pair{"--fov", &o.fov}, positive[0], positive[1]})
+        if (*value && !(**value >= kSmallest && **value <= kLargest))
+            return wrong(std::string(name) + " must lie between 1e-100 and 1e100");
     const std::pair<const char*, const std::optional<double>*> any[] = {
         {"--oblique-angle", &o.oblique_angle}, {"--near", &o.near_plane}, {"--far", &o.far_plane}};
     for (const auto& [name, value] : any)
         if (*value && !std::isfinite(**value))
             return wrong(std::string(name) + " must be a finite number");
+    for (const auto& [name, value] : {any[1], any[2]})
+        if (*value && std::abs(**value) > kLargest)
+            return wrong(std::string(name) + " must not lie beyond 1e100");
     if (o.near_plane && o.far_plane && !(*o.near_plane < *o.far_plane))
         return wrong("--near must be less than --far");
     const bool perspective =
@@ -75,6 +89,10 @@ Status check_numbers(const CameraOptions& o, Resolution resolution) {
         return wrong("--near must be positive in perspective");
     if (perspective && o.far_plane && *o.far_plane <= 0)
         return wrong("--far must be positive in perspective");
+    if (perspective && o.near_plane && *o.near_plane < kSmallest)
+        return wrong("--near must be at least 1e-100 in perspective");
+    if (perspective && o.far_plane && *o.far_plane < kSmallest)
+        return wrong("--far must be at least 1e-100 in perspective");
     return success();
 }
 
@@ -91,9 +109,10 @@ Ball ball_around(const Box& bounds) {
 }
 
 Aim choose_aim(const CameraOptions& o, const Ball& ball, Projection projection) {
-    const glm::dvec3 world_up = o.up.value_or(glm::dvec3{0, 1, 0});
-    if (o.direction) return {*o.direction, world_up};
-    if (!o.view && o.eye) return {o.target.value_or(ball.centre) - *o.eye, world_up};
+    const glm::dvec3 world_up = math::moderate(o.up.value_or(glm::dvec3{0, 1, 0}));
+    if (o.direction) return {math::moderate(*o.direction), world_up};
+    if (!o.view && o.eye)
+        return {math::moderate(o.target.value_or(ball.centre) - *o.eye), world_up};
     // An oblique picture shows the front in its true shape; of an oblique isometric one nothing is.
     const bool oblique = projection == Projection::cavalier || projection == Projection::cabinet;
     return aim_of(o.view.value_or(oblique ? NamedView::front : NamedView::isometric), world_up);
@@ -220,7 +239,7 @@ Result<Camera> make_camera(const CameraOptions& options, const Box& bounds, Reso
     set_oblique(camera, options);
     set_fit(camera, options, ball);
     if (!finite(camera.eye) || !std::isfinite(camera.view_height))
-        return wrong("the camera lies too far away: its coordinates overflow");
+        return wrong("the camera lies too far away: its coordinates overflow; give a larger --fov");
     if (Status s = set_depths(camera, options, bounds, depths); !s) return s.error();
     return camera;
 }

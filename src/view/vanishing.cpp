@@ -5,11 +5,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "math/moderate.hpp"
 #include "sightline/camera.hpp"
 
 namespace sightline {
 
 VanishingPoint vanishing_point(const Camera& camera, glm::dvec3 direction) {
+    direction = math::moderate(direction);
     const double along = glm::dot(direction, camera.gaze());
     // A direction this close to the view plane is parallel to it but for the rounding of the frame.
     constexpr double kParallel = 1e-12;

@@ -194,6 +194,17 @@ TEST_F(Notes, WhatFilesHoldThatIsNotDrawn) {
     EXPECT_EQ(json["notes"].size(), 1u);
 }
 
+TEST_F(Notes, TrianglesWithoutArea) {
+    write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 3 2 1\n");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"render", "flat.obj", "-o", "a.png"},
+          {"draw", "flat.obj", "-o", "a.svg"},
+          {"visible", "flat.obj"},
+          {"info", "flat.obj"}}) {
+        expect_line(command, {"degenerate", "all 2", "repair the model"});
+    }
+}
+
 TEST_F(Notes, OptionsWithoutEffect) {
     const auto idle = [&](const std::vector<std::string>& command, const std::string& option,
                           std::initializer_list<std::string> more) {

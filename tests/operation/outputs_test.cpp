@@ -132,6 +132,41 @@ TEST_F(OutputFiles, ThatAModelReadsAreWrongUse) {
     EXPECT_EQ(run({"render", "g.gltf", "-o", "textures/new.png"}).status, 0);
 }
 
+TEST_F(OutputFiles, StandardOutputIsAPlaceLikeOthers) {
+    write("m.obj", kCube);
+    write("scene.json", R"({"models":[{"path":"m.obj"}]})");
+    write("sun.txt", "0,0,-1\n");
+    fs::create_hard_link(folder_ / "m.obj", folder_ / "link.obj");
+    const std::string png = " -o - --output-format png ";
+    for (const std::string& command :
+         {"render m.obj" + png + "--ids ids.npy > ids.npy", "render m.obj" + png + ">> m.obj",
+          "draw m.obj" + png + "1<> m.obj", std::string("visible m.obj 1<> m.obj"),
+          std::string("info link.obj >> m.obj"),
+          std::string("info - --format obj < m.obj >> m.obj"),
+          std::string("info scene.json >> m.obj"), std::string("bench m.obj --frames 1 >> m.obj"),
+          std::string("render m.obj -o a.png --json > a.png"),
+          std::string("compare m.obj --difference a.png > a.png"),
+          std::string("visible m.obj --from-directions sun.txt >> sun.txt"),
+          std::string("render - --format obj -o m.obj --output-format png < m.obj")}) {
+        SCOPED_TRACE(command);
+        const Outcome outcome = shell("exec $S " + command);
+        EXPECT_EQ(outcome.status, 2) << outcome.err;
+        EXPECT_EQ(outcome.error_lines(), 1) << outcome.err;
+        EXPECT_EQ(read("m.obj"), kCube);
+        EXPECT_EQ(read("sun.txt"), "0,0,-1\n");
+    }
+    for (const std::string& command :
+         {"render m.obj" + png + "> a.png", std::string("visible m.obj >> list.csv"),
+          std::string("render m.obj -o /dev/stdout --output-format png > a.png"),
+          std::string("render m.obj -o b.png > b.png"),
+          std::string("render m.obj -o /dev/null --output-format png --json > /dev/null")}) {
+        SCOPED_TRACE(command);
+        const Outcome outcome = shell("exec $S " + command);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+    }
+    EXPECT_EQ(png_size(read("a.png")), (std::array<unsigned, 2>{1024, 768}));
+}
+
 TEST_F(OutputFiles, PlacesThatAreNone) {
     write("file.txt", "no folder");
     expect_failure(1, {"render", "cube.obj", "-o", "file.txt/x.png"}, {"file.txt", "is a file"});

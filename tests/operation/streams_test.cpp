@@ -104,6 +104,19 @@ TEST_F(Streams, ControlCharactersReachNoTerminal) {
     }
 }
 
+TEST_F(Streams, NamesOfSceneFilesAndJsonAreClean) {
+    write("scene.json",
+          R"({"models":[{"path":"cube.obj","name":"\t=1\u001b[31m\nY\u009b31m\r\u0000\u202eZ"}]})");
+    for (const std::string format : {"--csv", "--json"}) {
+        const Outcome outcome = run({"visible", "scene.json", "--by", "object", format});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_NE(outcome.out.find("?=1?[31m?Y??31m?????Z"), std::string::npos) << outcome.out;
+    }
+    write("scene.json", R"({"models":[{"path":"cube.obj","name":" =1+1"}]})");
+    const Outcome formula = run({"visible", "scene.json", "--by", "object"});
+    EXPECT_NE(formula.out.find("\"' =1+1\""), std::string::npos) << formula.out;
+}
+
 TEST_F(Streams, NamesThatLookLikeFormulasAreTextInCsv) {
     const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     write("names.obj",

@@ -113,6 +113,18 @@ TEST(Contained, AnInterruptedChildIsNoDamagedFile) {
     EXPECT_EQ(error.kind, ErrorKind::cancelled);
 }
 
+TEST(Contained, IgnoringChildrenChangesNothing) {
+    std::signal(SIGCHLD, SIG_IGN);
+    const auto bytes = run_contained([] { return Bytes(1000, std::byte{42}); }, {}, "file");
+    const auto memory = run_contained([]() -> Bytes { throw std::bad_alloc(); }, {}, "file");
+    const auto crash = run_contained([]() -> Bytes { std::abort(); }, {}, "file");
+    std::signal(SIGCHLD, SIG_DFL);
+    ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+    EXPECT_EQ(bytes->bytes().size(), 1000u);
+    EXPECT_TRUE(mentions(error_of(memory), "memory"));
+    EXPECT_TRUE(mentions(error_of(crash), "crashed"));
+}
+
 TEST(Contained, TooLargeAResultIsAnError) {
     ChildLimits limits;
     limits.memory_bytes = std::size_t{1} << 20;

@@ -191,8 +191,10 @@ Status SceneBuilder::append(const Soup& soup, const Placement& placement) {
         const SoupMesh& mesh = soup.meshes[object.mesh];
         if (mesh.polygon_sizes.empty()) continue;
         std::string name = clean_text(object.name.empty() ? placement.default_name : object.name);
-        if (placement.name)
-            name = drawn == 1 ? *placement.name : fmt::format("{}/{}", *placement.name, name);
+        if (placement.name) {
+            const std::string own = clean_text(*placement.name);
+            name = drawn == 1 ? own : fmt::format("{}/{}", own, name);
+        }
         const glm::dmat4 transform = placement.transform * object.transform;
         const glm::dmat3 linear(transform);
         const Instance instance{mesh,

@@ -1,6 +1,6 @@
 // A fork with limits. The child hands its result over through an anonymous file (memfd), which the
 // parent maps once the child is gone, and holds the write end of a pipe, whose end of file tells
-// the parent at once that it is gone, however it went.
+// the parent at once that it is gone, however it went. Its last act is to write its status there.
 #include "scene/load/contained.hpp"
 
 #include <fcntl.h>
@@ -24,6 +24,7 @@
 #include <new>
 #include <utility>
 
+#include "image/write_all.hpp"
 #include "scene/load/descriptor.hpp"
 
 namespace sightline::load {
@@ -87,35 +88,38 @@ void become_quiet_and_mortal(pid_t parent) {
     }
 }
 
-bool write_all(int fd, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = write(fd, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return true;
+int pipe_to_parent = -1;
+
+/// Ends the child. Its status goes through the pipe as well: a parent that ignores SIGCHLD can't
+/// ask the system for it.
+[[noreturn]] void leave(int status) {
+    const auto code = static_cast<unsigned char>(status);
+    const int ignored = write_all(pipe_to_parent, &code, 1);
+    static_cast<void>(ignored);
+    _exit(status);  // no destructors: they belong to the caller
 }
 
 [[noreturn]] void child_main(const std::function<std::vector<std::byte>()>& work,
-                             const ChildLimits& limits, pid_t parent, int result) {
+                             const ChildLimits& limits, pid_t parent, int result, int pipe) {
+    pipe_to_parent = pipe;
     become_quiet_and_mortal(parent);
     limit_resources(limits);
-    std::set_new_handler([] { _exit(kOutOfMemory); });
+    std::set_new_handler([] { leave(kOutOfMemory); });
     int status = kThrew;
     try {
-        status = write_all(result, work()) ? kDone : kNotHandedOver;
+        const std::vector<std::byte> bytes = work();
+        status = write_all(result, bytes.data(), bytes.size()) == 0 ? kDone : kNotHandedOver;
     } catch (const std::bad_alloc&) {
         status = kOutOfMemory;
     } catch (...) {
         status = kThrew;
     }
-    _exit(status);  // no destructors: they belong to the caller
+    leave(status);
 }
 
 // --- In the parent.
 
-/// Waits for the end of file on `pipe`; false when the time is over first.
+/// Waits for a byte or the end of file on `pipe`; false when the time is over first.
 bool wait_for_end(int pipe, double seconds) {
     using Clock = std::chrono::steady_clock;
     const auto deadline =
@@ -131,10 +135,15 @@ bool wait_for_end(int pipe, double seconds) {
     }
 }
 
-int wait_for_status(pid_t child) {
+/// The status of a child that ends. Where the caller ignores SIGCHLD, or somebody else waited for
+/// the child, it is what the child itself wrote into the pipe; a child that crashed wrote nothing.
+int wait_for_status(pid_t child, int pipe) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0) {
-        if (errno != EINTR) return W_EXITCODE(kThrew, 0);  // somebody else reaped it
+        if (errno == EINTR) continue;
+        unsigned char code = kThrew;
+        const bool told = read(pipe, &code, 1) == 1;
+        return W_EXITCODE(told ? code : kThrew, 0);
     }
     return status;
 }
@@ -228,11 +237,11 @@ Result<MappedBytes> run_contained(const std::function<std::vector<std::byte>()>&
     const pid_t parent = getpid();
     const pid_t child = fork();
     if (child < 0) return system_error(name, "fork");
-    if (child == 0) child_main(work, limits, parent, result.get());
+    if (child == 0) child_main(work, limits, parent, result.get(), held_by_child.get());
     held_by_child.reset();
     const bool in_time = wait_for_end(end_of_child.get(), limits.seconds);
     if (!in_time) kill(child, SIGKILL);
-    const int status = wait_for_status(child);
+    const int status = wait_for_status(child, end_of_child.get());
     if (!in_time) return out_of_time(limits, name);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != kDone) return failure(status, limits, name);
     return map_result(result.get(), name);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/magic.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -14,6 +15,8 @@
 #include <cstring>
 #include <thread>
 #include <utility>
+
+#include "image/write_all.hpp"
 
 namespace sightline::load {
 namespace {
@@ -82,7 +85,7 @@ Result<std::vector<std::byte>> read_up_to(int fd, const std::string& name, std::
         bytes.resize(before + std::min({kChunk, size - before, room > 0 ? room : kChunk}));
         ssize_t got = 0;
         do got = read(fd, bytes.data() + before, bytes.size() - before);
-        while (got < 0 && errno == EINTR);
+        while (got < 0 && worth_another_try(fd, POLLIN, errno));
         if (got < 0) return refused(name, errno);
         bytes.resize(before + static_cast<std::size_t>(got));
         if (got == 0) break;

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "math/thread_failure.hpp"
 #include "scene/finish.hpp"
 #include "scene/load/assimp_reader.hpp"
 #include "scene/load/build.hpp"
@@ -304,6 +305,7 @@ auto guarded(const std::string& name, const Load& load) -> decltype(load()) {
         return Error{ErrorKind::io,
                      fmt::format("{}: not enough memory; free some or use a smaller model", name)};
     } catch (const std::exception& exception) {
+        if (const auto text = thread_failure(exception)) return Error{ErrorKind::io, *text};
         return Error{ErrorKind::io, fmt::format("{}: {}; try again or report it", name,
                                                 one_line(exception.what()))};
     }

@@ -8,6 +8,16 @@ namespace {
 
 constexpr std::size_t kLongestMessage = 200;
 
+/// Whether a character of three bytes breaks lines or changes the order in which a terminal shows
+/// what stands around it: U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069.
+bool turns_text(std::string_view character) {
+    if (character.size() != 3 || character[0] != '\xe2') return false;
+    const auto second = static_cast<unsigned char>(character[1]),
+               third = static_cast<unsigned char>(character[2]);
+    if (second == 0x81) return third >= 0xa6 && third <= 0xa9;
+    return second == 0x80 && (third == 0x8e || third == 0x8f || (third >= 0xa8 && third <= 0xae));
+}
+
 /// Length of the well-formed UTF-8 character (RFC 3629) that the text begins with, or 0.
 std::size_t character_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -24,7 +34,7 @@ std::size_t character_length(std::string_view text) {
     const bool wrong = (lead == 0xc2 && second < 0xa0) || (lead == 0xe0 && second < 0xa0) ||
                        (lead == 0xed && second > 0x9f) || (lead == 0xf0 && second < 0x90) ||
                        (lead == 0xf4 && second > 0x8f);
-    return wrong ? 0 : length;
+    return wrong || turns_text(text.substr(0, length)) ? 0 : length;
 }
 
 }  // namespace
