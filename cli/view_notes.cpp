@@ -18,8 +18,6 @@ namespace {
 constexpr double kCoarse = 1e-4, kGain = 10, kNothing = 1e-6;
 
 constexpr double kRounding = 1e-12;
-// The products of coordinates that decide what is seen vanish in smaller scenes.
-constexpr double kSmallestScene = 1e-100;
 
 /// By how much depths differ that have neighbouring values of z.
 double step_of_depth(const Camera& camera, double depth) {
@@ -77,12 +75,6 @@ std::optional<std::string> trouble_with_planes(const Subject& subject, const Cam
 std::string why_blank(const Subject& subject, const Camera& camera, const ProjectCounts& counts) {
     const DepthRange all = depths_of_box(subject.reach, camera);
     if (all.empty()) return "the scene is empty";
-    const glm::dvec3 size = subject.reach.extent();
-    if (const double largest = std::max({size.x, size.y, size.z}); largest < kSmallestScene) {
-        return fmt::format(
-            "the scene is only {:.3g} across, too small to be computed with; scale the model up",
-            largest);
-    }
     if (counts.triangles > 0 && counts.degenerate == counts.triangles) {
         return fmt::format(
             "the triangles of the scene (all {}) are degenerate, without area; repair the model",
