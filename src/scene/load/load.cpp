@@ -289,9 +289,10 @@ Result<Scene> Loader::finish(const std::string& name) {
     const glm::dvec3 extent = scene.bounds.extent();
     const double size = std::max({extent.x, extent.y, extent.z});
     if (size < kLeastSize) {
-        return bad_input(fmt::format("{}: a scene of size {:g}, and none below {:g} can be drawn; "
-                                     "use larger numbers",
-                                     name, size, kLeastSize));
+        return bad_input(
+            fmt::format("{}: a scene of size {:g}, and none below {:g} can be drawn; "
+                        "use larger numbers",
+                        name, size, kLeastSize));
     }
     return scene;
 }
