@@ -70,7 +70,7 @@ private:
     }
 
     [[nodiscard]] FacePlane plane_of(std::uint32_t t) const {
-        return plane_of_face(scene_, scale_, begin_ + t);
+        return planes_.empty() ? plane_of_face(scene_, scale_, begin_ + t) : planes_[t];
     }
 
     /// A face in the hash table, with its plane, so that most are dismissed without a look
@@ -102,8 +102,15 @@ private:
 
     // A hash table whose slots lie in one row: those of slot s are residents_[first_[s]] to
     // residents_[first_[s + 1] - 1].
-    // Planes are computed twice, which takes less time than the memory to keep them.
+    // The planes of a large part are computed whenever they are needed: to keep them would take a
+    // quarter of all memory.
     void fill_cells() {
+        constexpr std::uint32_t kMostKept = 1u << 22;
+        if (count_ <= kMostKept) {
+            std::vector<FacePlane> planes(count_);
+            parallel_faces(count_, [&](std::uint32_t t) { planes[t] = plane_of(t); });
+            planes_.swap(planes);
+        }
         slot_bits_ = std::max(4, static_cast<int>(std::bit_width(count_)));
         first_.assign((std::size_t{1} << slot_bits_) + 1, 0);
         parallel_faces(count_, [&](std::uint32_t t) {
@@ -254,7 +261,8 @@ private:
 
     Scene& scene_;
     const SheetScale& scale_;
-    std::uint32_t begin_, count_;  // of the triangles; all others here are numbered from there
+    std::uint32_t begin_, count_;    // of the triangles; all others here are numbered from there
+    std::vector<FacePlane> planes_;  // of all, or nothing
     int slot_bits_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Resident> residents_;
