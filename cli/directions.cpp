@@ -48,8 +48,7 @@ Result<std::vector<glm::dvec3>> read_directions(const std::string& path) {
     if (!file) return file.error();
     const auto bytes = file->read_all();
     if (!bytes) return bytes.error();
-    std::string_view text =
-        load::without_mark({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    std::string_view text = load::without_mark(load::text_of(*bytes));
     std::vector<glm::dvec3> directions;
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());

@@ -155,8 +155,7 @@ private:
 }  // namespace
 
 Result<HeightTable> read_csv_heights(std::span<const std::byte> bytes, const std::string& name) {
-    return TableParser({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name)
-        .parse_all();
+    return TableParser(load::text_of(bytes), name).parse_all();
 }
 
 }  // namespace sightline::heights

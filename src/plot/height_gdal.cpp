@@ -319,7 +319,7 @@ Result<HeightTable> read_gdal_heights(const std::string& path,
     bytes = bytes.first(bytes.size() - 1);
     if (kind != kTable) {
         return Error{kind == kSystemRefused ? ErrorKind::io : ErrorKind::bad_input,
-                     std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())};
+                     std::string(load::text_of(bytes))};
     }
     std::optional<HeightTable> table = table_of(bytes);
     if (!table) return damaged(path, {});

@@ -37,13 +37,9 @@ Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(m
 
 enum class Format { png, npy, csv, gdal };
 
-std::string_view text_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// By the first bytes, then by the name.
 Result<Format> format_of(std::span<const std::byte> beginning, const std::string& path) {
-    const std::string_view text = text_of(beginning);
+    const std::string_view text = load::text_of(beginning);
     if (text.starts_with(kPngSignature)) return Format::png;
     if (text.starts_with(kNpyMagic)) return Format::npy;
     const std::string extension = load::extension_of(path);

@@ -256,15 +256,12 @@ std::string list_of(const std::set<std::string>& refused) {
 
 /// All bytes of a model; none when they can't be read.
 std::string bytes_of(const Source& source) {
-    const auto text_of = [](std::span<const std::byte> bytes) {
-        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    };
-    if (source.path.empty()) return text_of(source.bytes);
+    if (source.path.empty()) return std::string(text_of(source.bytes));
     constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max() / 2;
     const Result<InputFile> file = InputFile::open(source.path, kNoLimit);
     if (!file) return {};
     const Result<std::vector<std::byte>> bytes = file->read_all();
-    return bytes ? text_of(*bytes) : std::string();
+    return bytes ? std::string(text_of(*bytes)) : std::string();
 }
 
 /// An importer that is never destroyed: after some files that were read well, its destructor
@@ -294,8 +291,7 @@ const aiScene* import(Assimp::Importer& importer, const Source& source, AssimpFi
     importer.SetIOHandler(
         new AssimpFiles(alias, source.path, NamedFiles(source.path, allowed), names));
     if (!source.path.empty()) return importer.ReadFile(alias, 0);
-    const std::string_view bytes =
-        without_mark({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()});
+    const std::string_view bytes = without_mark(text_of(source.bytes));
     return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, source.format.c_str());
 }
 

@@ -110,9 +110,9 @@ Result<Soup> read_foreign(const Source& source, const LoadOptions& options) {
     if (!mapped) return mapped.error();
     const std::span<const std::byte> bytes = mapped->bytes();
     if (!bytes.empty() && bytes.back() == kMessage) {
-        return bad_input(fmt::format(
-            "{}: not a readable {} file ({}); check or export it again", source.name, source.format,
-            one_line({reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1})));
+        return bad_input(fmt::format("{}: not a readable {} file ({}); check or export it again",
+                                     source.name, source.format,
+                                     one_line(text_of(bytes.first(bytes.size() - 1)))));
     }
     std::optional<Soup> soup;
     if (!bytes.empty()) soup = deserialise(bytes.first(bytes.size() - 1));

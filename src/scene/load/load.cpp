@@ -30,10 +30,6 @@ namespace {
 
 Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
 
-std::string_view text_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// An error when the bytes are a text in UTF-16, which our readers can't read. A binary STL file
 /// may begin with any bytes.
 Status check_encoding(std::string_view bytes, const std::string& name, std::string_view format) {
@@ -88,6 +84,12 @@ std::optional<Error> other_format(const Source& source) {
         fmt::format("{}: not a readable {} file: it looks like {}; rename it or give "
                     "--format {}",
                     source.name, source.format, format, format));
+}
+
+/// What became of a source, but where reading it failed and it looks like another format, that.
+Status or_other_format(Status outcome, const Source& source) {
+    if (outcome || outcome.error().kind != ErrorKind::bad_input) return outcome;
+    return other_format(source).value_or(outcome.error());
 }
 
 /// Loads one file after another into one scene.
@@ -177,8 +179,7 @@ Status Loader::add_file(const std::string& path, const std::string& format,
     if (Status fits = check_encoding(text_of(*bytes), path, format); !fits) return fits;
     if (is_scene) {
         Status added = add_scene(text_of(*bytes), path, std::filesystem::path(path).parent_path());
-        if (added || added.error().kind != ErrorKind::bad_input) return added;
-        return other_format({path, "", format, *bytes, {}}).value_or(added.error());
+        return or_other_format(std::move(added), {path, "", format, *bytes, {}});
     }
     Source source{path, file->is_regular() ? path : "", format, {}, options_.allowed_paths};
     if (whole) source.bytes = *bytes;
@@ -196,17 +197,14 @@ Status Loader::add_source(Source source, const Placement& placement,
         if (std::optional<Error> other = other_format(source)) return *std::move(other);
     }
     const Result<Soup> soup = read_soup(source, options_);
-    if (soup && bytes != nullptr) {
+    if (!soup) return or_other_format(soup.error(), source);
+    if (bytes != nullptr) {
         source.bytes = {};
         std::vector<std::byte>().swap(*bytes);
     }
-    if (soup) {
-        for (const std::string& file : soup->files)
-            if (Status free = check_input(file, source.name); !free) return free;
-    }
-    const Status added = soup ? builder_.append(*soup, placement) : Status(soup.error());
-    if (added || added.error().kind != ErrorKind::bad_input) return added;
-    return other_format(source).value_or(added.error());
+    for (const std::string& file : soup->files)
+        if (Status free = check_input(file, source.name); !free) return free;
+    return or_other_format(builder_.append(*soup, placement), source);
 }
 
 Status Loader::check_input(const std::string& path, const std::string& model) {

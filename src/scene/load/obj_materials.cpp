@@ -118,8 +118,7 @@ ObjMaterials::Outcome ObjMaterials::load_words(std::string_view names) {
 /// Reads a file by its name as it stands, as other systems mean it, or beside the model when it
 /// lies nowhere else: other people's folders are not here.
 ObjMaterials::Outcome ObjMaterials::load_named(std::string_view name) {
-    std::string portable(name);
-    std::ranges::replace(portable, '\\', '/');
+    const std::string portable = portable_path(name);
     const std::filesystem::path folder = std::filesystem::path(context_.path()).parent_path();
     const bool quoted = name.size() > 2 && name.starts_with('"') && name.ends_with('"');
     Outcome outcome = Outcome::missing;
@@ -156,7 +155,7 @@ ObjMaterials::Outcome ObjMaterials::load_file(const std::filesystem::path& file)
     if (!input) return Outcome::unreadable;
     const Result<std::vector<std::byte>> bytes = input->read_all();
     if (!bytes) return Outcome::unreadable;
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const std::string_view text = text_of(*bytes);
     refused_.erase(real);
     files_.insert(real);
     if (is_utf16(text)) {

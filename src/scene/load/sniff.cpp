@@ -14,11 +14,6 @@ constexpr std::size_t kLooked = 4096;
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    return text;
-}
-
 /// A binary STL file has no mark, but its size follows from the count in its header.
 bool is_binary_stl(std::string_view bytes, std::size_t size) {
     constexpr std::size_t kHeader = 84, kFacet = 50;

@@ -39,6 +39,17 @@ std::size_t character_length(std::string_view text) {
 
 }  // namespace
 
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kWhiteSpace = " \t\v\f\r\n";
+    const std::size_t first = text.find_first_not_of(kWhiteSpace);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kWhiteSpace) + 1 - first);
+}
+
 std::string clean_text(std::string_view text) {
     std::string clean;
     clean.reserve(text.size());
@@ -68,6 +79,12 @@ bool is_utf16(std::string_view text) {
                text[3 - first] != '\0';
     };
     return zeros(0) || zeros(1);
+}
+
+std::string portable_path(std::string_view path) {
+    std::string portable(path);
+    std::ranges::replace(portable, '\\', '/');
+    return portable;
 }
 
 std::string_view last_component(std::string_view path) {

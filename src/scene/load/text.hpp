@@ -1,10 +1,18 @@
 // Text from foreign files, made fit for messages and outputs.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace sightline::load {
+
+/// The bytes of a file as characters.
+[[nodiscard]] std::string_view text_of(std::span<const std::byte> bytes);
+
+/// The text without the white space at its ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
 
 /// The text with control characters and bytes that are no UTF-8 replaced by '?'.
 [[nodiscard]] std::string clean_text(std::string_view text);
@@ -18,6 +26,9 @@ namespace sightline::load {
 /// Why such a text is not read, and the way out; follows a name in a message.
 inline constexpr std::string_view kUtf16Reason =
     "is in UTF-16, which is not read (save it as UTF-8)";
+
+/// The path with the slashes that this system knows, whatever system wrote it.
+[[nodiscard]] std::string portable_path(std::string_view path);
 
 /// The last component of a path of any system.
 [[nodiscard]] std::string_view last_component(std::string_view path);

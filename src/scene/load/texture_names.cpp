@@ -16,12 +16,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\v\f\r\n";
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-}
-
 std::string_view first_word(std::string_view text) {
     return text.substr(0, text.find_first_of(kBlanks));
 }
@@ -126,8 +120,7 @@ std::vector<std::string> names_in_map(std::string_view text) {
 }
 
 std::vector<std::string> places_of(const std::filesystem::path& folder, std::string_view name) {
-    std::string portable(name);
-    std::ranges::replace(portable, '\\', '/');
+    const std::string portable = portable_path(name);
     std::vector<std::string> places = {(folder / name).string()};
     if (portable != name) places.push_back((folder / portable).string());
     std::error_code ignored;
