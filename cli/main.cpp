@@ -74,7 +74,7 @@ int report(const Error& error) {
     return exit_status(error.kind);
 }
 
-/// What the words ask for; what the library and its own libraries throw becomes an error.
+/// Runs what the words ask for. Everything that is thrown below becomes an error.
 Result<int> run_guarded(const Words& words) {
     try {
         return run_program(words);

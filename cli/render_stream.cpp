@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// As depths_in_view() of the whole: every part is loaded for it, one at a time.
+    /// Finds what depths_in_view() would find in the whole: it loads one part after the other.
     DepthRange depths_of_parts(const Camera& camera, EdgeOn edge_on) {
         DepthRange range;
         const auto count = static_cast<unsigned>(options_.models.paths.size());

@@ -7,8 +7,8 @@
 
 namespace sightline::math {
 
-/// The same direction; where squares of its components would overflow or vanish, scaled by a power
-/// of two, which rounds nothing that counts. Zero stays zero.
+/// Scales a direction by a power of two if squares of its components would overflow or vanish, and
+/// else leaves it as it is. That rounds nothing that counts. Zero stays zero.
 inline glm::dvec3 moderate(const glm::dvec3& direction) {
     constexpr int kLargestExponent = 300;
     const double largest =

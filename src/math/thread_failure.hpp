@@ -7,7 +7,7 @@
 
 namespace sightline {
 
-/// What happened and the way out, if the exception says that a thread could not be started.
+/// A message with the way out, if the exception says that a thread could not be started.
 [[nodiscard]] std::optional<std::string> thread_failure(const std::exception& exception);
 
 }  // namespace sightline

@@ -21,7 +21,7 @@ namespace sightline {
 
 namespace {
 
-// What options may say: the squares of such numbers can be computed with.
+// Options may give numbers between these: their squares can still be computed with.
 constexpr double kLargest = 1e100, kSmallest = 1e-100;
 constexpr double kFitMargin = 1.05;    // of the bounding sphere
 constexpr double kDepthMargin = 1e-3;  // of the depth range, on both sides of near and far

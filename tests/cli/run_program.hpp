@@ -37,6 +37,22 @@ inline const std::string kCube =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
+/// The program's name and these words, as a new process wants them. They stay in `words`.
+inline std::vector<char*> argv_of(std::vector<std::string>& words) {
+    words.insert(words.begin(), SIGHTLINE_PROGRAM);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return argv;
+}
+
+/// The exit status of a program when it has ended, or 128 and the signal that ended it.
+inline int status_of(pid_t program) {
+    int state = 0;
+    waitpid(program, &state, 0);
+    return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+}
+
 /// A program that runs.
 class Running {
 public:
@@ -44,10 +60,7 @@ public:
             const fs::path& private_folder)
         : private_(private_folder) {
         write_file(private_ / "in", input);
-        words.insert(words.begin(), SIGHTLINE_PROGRAM);
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
+        const std::vector<char*> argv = argv_of(words);
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         const auto redirect = [&](int descriptor, const char* name, int flags) {
@@ -66,9 +79,7 @@ public:
     void send(int signal) const { kill(pid_, signal); }
 
     Outcome wait() {
-        int state = 0;
-        waitpid(pid_, &state, 0);
-        const int status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+        const int status = status_of(pid_);
         return {status, read_file(private_ / "out"), read_file(private_ / "err")};
     }
 

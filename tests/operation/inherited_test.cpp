@@ -15,10 +15,7 @@ protected:
     /// Starts the program with a descriptor in the place of a standard stream; the others are
     /// files.
     [[nodiscard]] pid_t spawn(std::vector<std::string> words, int descriptor, int stream) const {
-        words.insert(words.begin(), SIGHTLINE_PROGRAM);
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
+        const std::vector<char*> argv = argv_of(words);
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_addchdir_np(&actions, folder_.c_str());
@@ -33,11 +30,6 @@ protected:
                   0);
         posix_spawn_file_actions_destroy(&actions);
         return program;
-    }
-    [[nodiscard]] static int status_of(pid_t program) {
-        int state = 0;
-        waitpid(program, &state, 0);
-        return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
     }
 
     /// Everything that the program writes into a pipe that does not block, read after a while.

@@ -12,7 +12,7 @@ namespace sightline::load {
 
 class AssimpFiles : public Assimp::DefaultIOSystem {
 public:
-    /// Of the files beside the model: those that are there or lie outside, and some of those that
+    /// Names of files beside the model: those that are there or lie outside, and some of those that
     /// may not be opened.
     struct Names {
         std::set<std::string> asked_for, refused;

@@ -202,7 +202,7 @@ std::string up_axis_of(const aiScene& scene) {
     return fmt::format("{},{},{}", at(0), at(1), at(2));
 }
 
-/// What the file holds that shapes it and is not read.
+/// Notes what a file holds that would shape its meshes and is not read.
 void note_what_is_not_read(const aiScene& scene, Soup& soup) {
     unsigned skinned = 0, morphed = 0;
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -335,7 +335,7 @@ std::variant<Soup, std::string> read_with_assimp(const Source& source) {
     }
     if (logged_errors_count(source.format) && !errors->last.empty()) return errors->last;
     Soup soup = soup_of(*scene, source.format);
-    // Of a glTF file assimp tells only the textures of materials that it knows.
+    // assimp tells only the textures of materials that it knows; a glTF file has others.
     const std::set<std::string> textures = is_gltf ? document.images : textures_of(*scene);
     if (!textures.empty()) soup.notes.insert(soup.notes.begin(), note_of_textures(textures));
     if (source.format == "off" && off_has_face_colors(bytes_of(source))) {

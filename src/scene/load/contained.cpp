@@ -41,7 +41,6 @@ Error system_error(const std::string& name, const char* what) {
 
 // --- In the child.
 
-#if !defined(SIGHTLINE_SANITIZED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 /// Bytes of address space in use.
 std::size_t mapped_now() {
     unsigned long pages = 0;
@@ -51,7 +50,6 @@ std::size_t mapped_now() {
     }
     return static_cast<std::size_t>(pages) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
-#endif
 
 void set_limit(decltype(RLIMIT_CPU) resource, std::size_t value) {
     rlimit limit{};
@@ -65,10 +63,8 @@ void limit_resources(const ChildLimits& limits) {
     set_limit(RLIMIT_CPU,
               static_cast<std::size_t>(std::ceil(std::clamp(limits.seconds, 0.0, 1e9))) + 1);
     set_limit(RLIMIT_FSIZE, limits.memory_bytes);  // the anonymous file counts as one
-#if !defined(SIGHTLINE_SANITIZED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     // Sanitizers map terabytes of shadow memory, so there they must do without.
-    set_limit(RLIMIT_AS, mapped_now() + limits.memory_bytes);
-#endif
+    if (!kIsSanitized) set_limit(RLIMIT_AS, mapped_now() + limits.memory_bytes);
 }
 
 void become_quiet_and_mortal(pid_t parent) {

@@ -11,6 +11,13 @@
 
 namespace sightline::load {
 
+/// Whether a sanitizer watches this build: then memory is its own, in size and content.
+#if defined(SIGHTLINE_SANITIZED) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kIsSanitized = true;
+#else
+inline constexpr bool kIsSanitized = false;
+#endif
+
 struct ChildLimits {
     double seconds = 120;                             ///< of wall-clock and of processor time
     std::size_t memory_bytes = std::size_t{8} << 30;  ///< beyond what the caller has mapped already

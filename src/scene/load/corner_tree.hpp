@@ -42,8 +42,8 @@ private:
     static constexpr std::uint32_t kLeaf = 8;  // corners that are not divided any more
 
     void divide(std::uint32_t node);
-    /// Of a box and a triangle. Exactly what turn() says of each point of the box: its roundings
-    /// keep the order.
+    /// Where a box lies to a triangle. This is exactly what turn() says of each point of the box:
+    /// its roundings keep the order.
     [[nodiscard]] static Place place_of(const Node& node,
                                         const std::array<glm::dvec2, 3>& triangle);
 

@@ -74,8 +74,7 @@ void EarCutter::touch(std::uint32_t corner) {
     reflex_.mark(corner, area < 0 || back);
     ++c.stamp;
     if (back || area == 0) (back ? backs_ : flats_).push_back({corner, c.stamp});
-    if (area > 0)
-        for (std::deque<Candidate>& queue : queues_) queue.push_back({corner, c.stamp});
+    if (area > 0) queues_[0].push_back({corner, c.stamp});
 }
 
 /// Whether two points lie in one direction from a third one, or one of them coincides with it.
@@ -114,12 +113,14 @@ std::uint32_t EarCutter::relaxed_ear() {
     return start_;
 }
 
-/// Each corner is asked once with the neighbours that it has: that what blocked it is gone doesn't
-/// matter where no two sides cross, for there an ear is blocked until its neighbours change.
+/// Each corner is asked once with the neighbours that it has, and if it is no ear, waits until less
+/// is asked for. It does not matter where no two sides cross that what blocked it may be gone by
+/// then: an ear is blocked there until its neighbours change.
 std::optional<std::uint32_t> EarCutter::next_ear(Strictness strictness) {
-    std::deque<Candidate>& queue = queues_[static_cast<std::size_t>(strictness)];
-    while (const auto corner = next_of(queue)) {
+    const auto level = static_cast<std::size_t>(strictness);
+    while (const auto corner = next_of(queues_[level])) {
         if (work_ > limit_ || is_ear(*corner, strictness)) return corner;
+        queues_[level + 1].push_back({*corner, corners_[*corner].stamp});
     }
     return std::nullopt;
 }

@@ -57,7 +57,8 @@ private:
 
     std::span<const glm::dvec2> points_;
     std::vector<Corner> corners_;
-    std::array<std::deque<Candidate>, 3> queues_;  ///< what may be an ear, by Strictness
+    std::array<std::deque<Candidate>, 3> queues_;  ///< what may be an ear, by Strictness:
+                                                   ///< first in the first, and later in the next
     std::deque<Candidate> flats_;  ///< corners on a straight line: only when there is no proper ear
     std::deque<Candidate> backs_;  ///< where the outline turns back: to be cut off at once
     CornerTree reflex_;            ///< marks what turns right or back: only that can block an ear

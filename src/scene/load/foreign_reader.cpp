@@ -22,7 +22,7 @@
 namespace sightline::load {
 namespace {
 
-// What the child sends: one of these, then a soup or a message.
+// The child sends a soup or a message, and then one of these.
 constexpr std::byte kSoup{0}, kMessage{1};
 
 Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(message)}; }
@@ -30,7 +30,7 @@ Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(m
 /// Makes the memory that malloc() hands out from here on hold this byte (or its complement) where
 /// nobody sets it, beyond the end of a block too, and lie at an address that depends on the byte.
 /// For the child: it slows malloc() down and leaks.
-[[maybe_unused]] void fill_memory(int byte) {
+void fill_memory(int byte) {
     constexpr std::size_t kLargest = std::size_t{4} << 20, kMost = std::size_t{256} << 20;
     constexpr int kNever = 32 << 20;
     mallopt(M_PERTURB, byte);
@@ -38,8 +38,8 @@ Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(m
     mallopt(M_TRIM_THRESHOLD, kNever);  // not given back to the system
     void* volatile shift = std::malloc(static_cast<std::size_t>(byte) << 12);
     if (shift == nullptr) return;
-    // What the caller left free is taken until the heap grows, in blocks of every size; what is
-    // freed is filled.
+    // All that the caller left free is taken until the heap grows, in blocks of every size, and
+    // given back: what is freed is filled.
     void* blocks = nullptr;
     std::size_t total = 0;
     for (std::size_t size = kLargest; size > 3 * sizeof(void*); size /= 2) {
@@ -58,10 +58,8 @@ Error bad_input(std::string message) { return {ErrorKind::bad_input, std::move(m
 }
 
 /// `fill`: see fill_memory(). Sanitizers have an allocator of their own, which fills what it likes.
-std::vector<std::byte> read_in_child(const Source& source, [[maybe_unused]] int fill) {
-#if !defined(SIGHTLINE_SANITIZED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    fill_memory(fill);
-#endif
+std::vector<std::byte> read_in_child(const Source& source, int fill) {
+    if (!kIsSanitized) fill_memory(fill);
     std::variant<Soup, std::string> read = read_with_assimp(source);
     std::vector<std::byte> bytes;
     if (const Soup* soup = std::get_if<Soup>(&read)) {
@@ -76,9 +74,10 @@ std::vector<std::byte> read_in_child(const Source& source, [[maybe_unused]] int 
     return bytes;
 }
 
-/// What assimp makes of a file, as bytes from its child process. Some of its readers use memory
-/// that they have not set, so the same file gives another model each time. So nothing that was not
-/// set is left to chance, and a file of moderate size is read twice, with other values there.
+/// Reads a file by assimp, and gives the bytes that the child process sends. Some of its readers
+/// use memory that they have not set, so the same file gives another model each time. So nothing
+/// that was not set is left to chance, and a file of moderate size is read twice, with other values
+/// there.
 Result<MappedBytes> read_twice(const Source& source, const LoadOptions& options) {
     constexpr int kFill = 0x55, kOtherFill = 0xAB;
     constexpr std::uintmax_t kReadTwice = std::uintmax_t{16} << 20;

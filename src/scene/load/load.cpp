@@ -86,7 +86,8 @@ std::optional<Error> other_format(const Source& source) {
                     source.name, source.format, format, format));
 }
 
-/// What became of a source, but where reading it failed and it looks like another format, that.
+/// Passes on what became of reading a source, or says that it looks like another format where that
+/// explains the failure.
 Status or_other_format(Status outcome, const Source& source) {
     if (outcome || outcome.error().kind != ErrorKind::bad_input) return outcome;
     return other_format(source).value_or(outcome.error());

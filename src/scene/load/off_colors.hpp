@@ -1,4 +1,4 @@
-// What assimp's reader of OFF files leaves out.
+// Finds out what assimp's reader of OFF files leaves out without a word.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// What a file is by its first bytes, for messages only: nothing is ever read as another format than
-// the one its name, or the user, tells.
+// Tells the format of a file by its first bytes, for messages only: nothing is ever read as another
+// format than the one its name, or the user, tells.
 #pragma once
 
 #include <string>

@@ -42,10 +42,10 @@ inline constexpr std::string_view kUtf16Reason =
 /// The first line of a message of a foreign library, cleaned and cut to a readable length.
 [[nodiscard]] std::string one_line(std::string_view message);
 
-/// As much of a text that a user gave as a message repeats: 80 bytes, whole characters.
+/// The beginning of a text that a user gave, for a message: at most 80 bytes, whole characters.
 [[nodiscard]] std::string shortened(std::string_view text);
 
-/// What is noted of a file whose faces have colours.
+/// The note of Soup::notes about a file whose faces have colours.
 inline constexpr std::string_view kNoFaceColors = "colours of faces are not read";
 
 }  // namespace sightline::load

@@ -10,11 +10,12 @@
 
 namespace sightline::load {
 
-/// What the rest of a line may name, the most likely first: with or without quotes and a comment,
-/// all of it or its last word. None when it is blank.
+/// The names that the rest of a line may hold, the most likely first: with or without quotes and a
+/// comment, all of it or its last word. None when it is blank.
 [[nodiscard]] std::vector<std::string> names_in(std::string_view text);
 
-/// The same of what follows the keyword of a texture in an MTL file: options, then a name.
+/// The names, likewise, in what follows the keyword of a texture in an MTL file: options, then a
+/// name.
 [[nodiscard]] std::vector<std::string> names_in_map(std::string_view text);
 
 /// Where a file may lie that is named in a file in `folder`: its name may be relative to that, have
@@ -27,11 +28,11 @@ struct TextureNames {
     std::vector<std::string> places;  ///< where they may lie
 };
 
-/// What texts name in a model at this path; "" for one without a place.
+/// The textures that these texts name in a model at this path; "" for one without a place.
 [[nodiscard]] TextureNames textures_in(const std::vector<std::string>& texts,
                                        const std::string& model);
 
-/// What is noted of textures, by their names; "" when there are none.
+/// The note of Soup::notes about textures with these names; "" when there are none.
 [[nodiscard]] std::string note_of_textures(const std::set<std::string>& names);
 
 }  // namespace sightline::load
