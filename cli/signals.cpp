@@ -25,6 +25,7 @@ namespace {
 constexpr int kInterruptedStatus = 130, kFailedStatus = 1, kNobodyReadsStatus = 128 + SIGPIPE;
 
 std::atomic<pid_t> main_process{0};
+std::atomic_flag is_stopping = ATOMIC_FLAG_INIT;
 std::array<char, 160> time_limit_message{};
 constexpr char kProcessorTimeMessage[] =
     "sightline: the limit on processor time (ulimit -t) is reached; raise it or ask for less\n";
@@ -33,9 +34,11 @@ static_assert(std::atomic<pid_t>::is_always_lock_free);
 /// A child process (one that parses a model) inherits the handlers, but owns no file.
 bool is_child() { return getpid() != main_process.load(); }
 
-/// Ends the program with a message, which may be empty.
+/// Ends the program with a message, which may be empty. Signals can come to several threads at a
+/// time: the first one ends the program, the others wait for it.
 [[noreturn]] void stop(int status, const char* message) {
     if (!is_child()) {
+        while (is_stopping.test_and_set()) pause();
         remove_temporary_files_from_signal_handler();
         clear_progress_from_signal_handler();
         const auto written = write(STDERR_FILENO, message, std::strlen(message));

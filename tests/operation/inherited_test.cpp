@@ -134,8 +134,10 @@ TEST_F(Inherited, ALimitOnThreadsIsNamed) {
         EXPECT_NE(outcome.err.find("threads"), std::string::npos) << outcome.err;
         EXPECT_EQ(outcome.err.find("cube.obj"), std::string::npos) << outcome.err;
     }
+#ifndef __SANITIZE_THREAD__  // its stand-in for oneTBB has two threads at least
     const Outcome alone = shell("exec " + other + "\"$S\" render cube.obj -o a.png --threads 1");
     EXPECT_EQ(alone.status, 0) << alone.err;
+#endif
 }
 
 }  // namespace
