@@ -25,7 +25,7 @@ namespace {
 constexpr int kInterruptedStatus = 130, kFailedStatus = 1, kNobodyReadsStatus = 128 + SIGPIPE;
 
 std::atomic<pid_t> main_process{0};
-std::atomic_flag is_stopping = ATOMIC_FLAG_INIT;
+std::atomic<pid_t> stopping_thread{0};
 std::array<char, 160> time_limit_message{};
 constexpr char kProcessorTimeMessage[] =
     "sightline: the limit on processor time (ulimit -t) is reached; raise it or ask for less\n";
@@ -35,10 +35,15 @@ static_assert(std::atomic<pid_t>::is_always_lock_free);
 bool is_child() { return getpid() != main_process.load(); }
 
 /// Ends the program with a message, which may be empty. Signals can come to several threads at a
-/// time: the first one ends the program, the others wait for it.
-[[noreturn]] void stop(int status, const char* message) {
+/// time: the first one ends the program, the others wait for it. It returns where a signal comes
+/// within the handler, which only a sanitizer lets happen.
+void stop(int status, const char* message) {
     if (!is_child()) {
-        while (is_stopping.test_and_set()) pause();
+        pid_t first = 0;
+        if (!stopping_thread.compare_exchange_strong(first, gettid())) {
+            if (first == gettid()) return;
+            for (;;) pause();
+        }
         remove_temporary_files_from_signal_handler();
         clear_progress_from_signal_handler();
         const auto written = write(STDERR_FILENO, message, std::strlen(message));
