@@ -102,7 +102,11 @@ TEST_F(Stopped, ByTheLimitOnProcessorTime) {
     write("slow.obj", model);
     const std::string command =
         "exec $S render slow.obj --algorithm brute --resolution 8000x8000 -o a.png --ids i.png";
-    for (const std::string limit : {"ulimit -t 1; ", "ulimit -S -t 1; "}) {
+    std::vector<std::string> limits = {"ulimit -S -t 1; "};
+#ifndef __SANITIZE_THREAD__  // it delivers signals late, and at the hard limit the system kills
+    limits.emplace_back("ulimit -t 1; ");
+#endif
+    for (const std::string& limit : limits) {
         put_old_files();
         const Outcome outcome = shell(limit + command);
         EXPECT_EQ(outcome.status, 1);
